@@ -1,0 +1,107 @@
+//! What a call is handed besides the task: its random stream, its budget, and a recorder of what happened.
+
+use crate::{CallError, Random, Reason, Slot};
+
+/// Whether the run should stop now: a deadline, Ctrl-C. The command line implements it; libraries own no clock.
+pub trait Interrupt: Sync {
+    /// True once the run should end. Called often (every 10 to 100 µs); must be cheap.
+    fn interrupted(&self) -> bool;
+}
+
+/// Never interrupts.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Uninterrupted;
+
+impl Interrupt for Uninterrupted {
+    fn interrupted(&self) -> bool {
+        false
+    }
+}
+
+/// Counts of calls and of rejections by cause, for each slot.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    calls: [u64; Slot::ALL.len()],
+    rejections: [[u64; Reason::ALL.len()]; Slot::ALL.len()],
+}
+
+impl Tally {
+    /// How often the plugin in `slot` was called.
+    pub fn calls(&self, slot: Slot) -> u64 {
+        self.calls[slot as usize]
+    }
+
+    /// How often the plugin in `slot` said no because of `reason`.
+    pub fn rejections(&self, slot: Slot, reason: Reason) -> u64 {
+        self.rejections[slot as usize][reason as usize]
+    }
+
+    /// Adds the counts of another call.
+    pub fn add(&mut self, other: &Self) {
+        self.calls.iter_mut().zip(other.calls).for_each(|(a, b)| *a += b);
+        let theirs = other.rejections.iter().flatten();
+        self.rejections.iter_mut().flatten().zip(theirs).for_each(|(a, b)| *a += b);
+    }
+}
+
+/// The mutable side of one call: random stream, budget, counts. One a call chain and thread; never shared.
+pub struct Context<'a> {
+    /// The call's random stream: the only source of randomness a plugin may use.
+    pub random: Random,
+    /// What happened so far.
+    pub tally: Tally,
+    interrupt: &'a dyn Interrupt,
+}
+
+impl<'a> Context<'a> {
+    /// A context with the given random stream and interrupt and empty counts.
+    pub fn new(random: Random, interrupt: &'a dyn Interrupt) -> Self {
+        Self { random, tally: Tally::default(), interrupt }
+    }
+
+    /// Ends the call with [`CallError::Interrupted`] where the run should stop. Call it once per step of a long loop.
+    pub fn proceed(&self) -> Result<(), CallError> {
+        if self.interrupt.interrupted() { Err(CallError::Interrupted) } else { Ok(()) }
+    }
+
+    /// Counts one call of the plugin in `slot`.
+    pub fn count_call(&mut self, slot: Slot) {
+        self.tally.calls[slot as usize] += 1;
+    }
+
+    /// Counts one "no" of the plugin in `slot`, and hands the reason back.
+    pub fn reject(&mut self, slot: Slot, reason: Reason) -> Reason {
+        self.tally.rejections[slot as usize][reason as usize] += 1;
+        reason
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Always;
+    impl Interrupt for Always {
+        fn interrupted(&self) -> bool {
+            true
+        }
+    }
+
+    #[test]
+    fn counts_by_slot_and_reason_and_adds_up() {
+        let mut context = Context::new(Random::from_key(0, 0, 0, 0), &Uninterrupted);
+        context.count_call(Slot::Sampler);
+        assert_eq!(context.reject(Slot::Sampler, Reason::Reach), Reason::Reach);
+        let mut sum = context.tally.clone();
+        sum.add(&context.tally);
+        assert_eq!(sum.rejections(Slot::Sampler, Reason::Reach), 2);
+        assert_eq!(sum.rejections(Slot::Sampler, Reason::Slip), 0);
+        assert_eq!((sum.calls(Slot::Sampler), sum.calls(Slot::Surface)), (2, 0));
+    }
+
+    #[test]
+    fn an_interrupt_ends_the_call() {
+        let context = Context::new(Random::from_key(0, 0, 0, 0), &Always);
+        assert!(matches!(context.proceed(), Err(CallError::Interrupted)));
+    }
+}

@@ -1,0 +1,70 @@
+//! The object as the planner sees it: mesh, mass and friction.
+
+use crate::{Mat3, Mesh, Vec3};
+
+/// A solid in closed form, about its own origin and along its own axes (m).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Primitive {
+    /// A ball.
+    Sphere {
+        /// Radius.
+        radius: f64,
+    },
+    /// An ellipsoid.
+    Ellipsoid {
+        /// Half the lengths along x, y, z.
+        semi_axes: Vec3,
+    },
+    /// A box.
+    Cuboid {
+        /// Half the lengths along x, y, z.
+        half_size: Vec3,
+    },
+    /// A cylinder along z.
+    Cylinder {
+        /// Radius.
+        radius: f64,
+        /// Half the height.
+        half_height: f64,
+    },
+    /// A cylinder along z with half balls at its ends.
+    Capsule {
+        /// Radius.
+        radius: f64,
+        /// Half the height of the cylindrical part.
+        half_height: f64,
+    },
+    /// A ring about z.
+    Torus {
+        /// Distance of the tube's centre from z.
+        ring_radius: f64,
+        /// Radius of the tube.
+        tube_radius: f64,
+    },
+}
+
+/// The rigid object. Its frame is O; the mesh is its true surface.
+#[derive(Clone, Debug)]
+pub struct ObjectModel {
+    /// The surface.
+    pub mesh: Mesh,
+    /// The closed form that the mesh approximates, if any.
+    pub primitive: Option<Primitive>,
+    /// Mass (kg).
+    pub mass: f64,
+    /// Centre of mass Cm in O (m).
+    pub p_OCm: Vec3,
+    /// Inertia about the centre of mass, in O (kg·m²).
+    pub inertia_OCm: Mat3,
+    /// Coefficient of friction between object and fingertips, no unit.
+    pub friction: f64,
+}
+
+impl ObjectModel {
+    /// An object of uniform density with the given mass (kg).
+    pub fn new(mesh: Mesh, primitive: Option<Primitive>, mass: f64, friction: f64) -> Self {
+        let unit = mesh.mass_properties();
+        let inertia_OCm = unit.inertia_OCm * (mass / unit.volume);
+        Self { mesh, primitive, mass, p_OCm: unit.p_OCm, inertia_OCm, friction }
+    }
+}

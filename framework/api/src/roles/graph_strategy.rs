@@ -1,0 +1,114 @@
+//! Role 6: what to do next with the manipulation graph.
+
+use crate::{CallError, Context};
+
+/// A node of the manipulation graph, counted from 0 in the order of creation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct NodeId(pub u32);
+
+/// An edge of the manipulation graph, counted from 0 in the order of creation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EdgeId(pub u32);
+
+/// A connected component, named by its smallest node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ComponentId(pub u32);
+
+/// How two nodes are joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EdgeKind {
+    /// By a path inside GS_n, contacts sliding: it must be decomposed before it can be executed.
+    Grasp,
+    /// By a transfer followed by regrasps: executable as it is.
+    TransferRegrasp,
+}
+
+/// What is known about an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EdgeVerdict {
+    /// Entered without a check.
+    Unchecked,
+    /// Its local path is valid.
+    Valid,
+    /// Valid, and decomposed into executable segments.
+    Executable,
+}
+
+/// An edge with its ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeView {
+    /// Its number.
+    pub id: EdgeId,
+    /// One end.
+    pub from: NodeId,
+    /// The other end.
+    pub to: NodeId,
+    /// How it joins them.
+    pub kind: EdgeKind,
+    /// What is known about it.
+    pub verdict: EdgeVerdict,
+}
+
+/// How a new node is joined to the graph inside GS_n.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Link {
+    /// Try a checked grasp edge to each component (Algorithm 2 of the paper).
+    Components,
+    /// Enter unchecked grasp edges to this many nearest nodes.
+    Unchecked(usize),
+    /// Leave it alone.
+    None,
+}
+
+/// What the planner does next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Action {
+    /// Sample a node anywhere in GS_n, and join it.
+    Explore(Link),
+    /// Sample a node near the given one, and join it.
+    Extend(NodeId, Link),
+    /// Try an edge of the given kind between two nodes.
+    Connect(NodeId, NodeId, EdgeKind),
+    /// Check an unchecked edge; if it fails it leaves the graph.
+    Check(EdgeId),
+    /// Search the graph for a path from start to goal and decompose it.
+    Query,
+    /// Give up.
+    Stop,
+}
+
+/// The graph as a strategy sees it; its only memory.
+pub trait GraphView {
+    /// Nodes in the graph; their ids are `0..node_count()`.
+    fn node_count(&self) -> usize;
+    /// Nodes generated so far, kept or not, and the most that may be generated.
+    fn generated(&self) -> (usize, usize);
+    /// The node that the search starts from.
+    fn start(&self) -> NodeId;
+    /// The goal's nodes, one for each grasp that was found at the goal's pose.
+    fn goals(&self) -> &[NodeId];
+    /// The component of a node, unchecked edges included.
+    fn component(&self, node: NodeId) -> ComponentId;
+    /// The components in ascending order.
+    fn components(&self) -> &[ComponentId];
+    /// Whether start and some goal lie in one component: a query may succeed.
+    fn joined(&self) -> bool;
+    /// Distance between two nodes in the planner's metric (m).
+    fn distance(&self, a: NodeId, b: NodeId) -> f64;
+    /// Whether an edge of this kind was tried between the two nodes, in either direction.
+    fn attempted(&self, a: NodeId, b: NodeId, kind: EdgeKind) -> bool;
+    /// The edges in the graph, in ascending order of ids.
+    fn edges(&self) -> &[EdgeView];
+    /// The edges of the shortest path from start to a goal, unchecked ones included; empty if there is none.
+    fn shortest_path(&self) -> Vec<EdgeId>;
+}
+
+/// Decides what to do next, given a view of the graph.
+///
+/// Pure in the view and the context's random stream: it has no other memory.
+pub trait GraphStrategy: Send + Sync {
+    /// The next action.
+    fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError>;
+}
+const _: Option<&dyn GraphStrategy> = None; // must stay object safe

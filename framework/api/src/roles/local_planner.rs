@@ -1,0 +1,60 @@
+//! Role 5: connecting two configurations inside one kind of subspace.
+
+use crate::{
+    CallError, Configuration, Contact, Context, FingerIndex, FingerJoints, Path, Pose, Reason, Task,
+};
+
+/// Where a local planner is to go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target<'a> {
+    /// Slot `local-planner.grasp`: to this configuration with the same fingers holding; contacts slide.
+    Grasp(&'a Configuration),
+    /// Slot `local-planner.transfer`: the object to this pose, every holding fingertip rolling without slip.
+    Transfer(&'a Pose),
+    /// Slot `local-planner.regrasp`: one finger moves, everything else rests.
+    Regrasp {
+        /// The finger that moves.
+        finger: FingerIndex,
+        /// Its contact at the end, `None` if it ends free.
+        contact: Option<&'a Contact>,
+        /// Its joint positions at the end; they bring the fingertip to `contact`.
+        joints: &'a FingerJoints,
+    },
+}
+
+/// How far a local planner came.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reached {
+    /// The last valid configuration: for a transfer with its drifted contacts.
+    pub end: Configuration,
+    /// The fraction of the motion made, in [0, 1]; 1 exactly when the target was reached.
+    pub fraction: f64,
+    /// Why it stopped short; `None` exactly when `fraction` is 1.
+    pub stop: Option<Reason>,
+}
+
+impl Reached {
+    /// Whether the target was reached.
+    pub fn is_complete(&self) -> bool {
+        self.stop.is_none()
+    }
+}
+
+/// Connects a configuration with a target inside one kind of subspace: GS_n, transfer, or regrasp.
+///
+/// Every state it stores is valid, and so is the motion between consecutive states, to half of the task's tolerances;
+/// the first stored state equals `from`, the last equals the returned end. A refusal is counted in the context with its
+/// reason by the local planner itself. Grasp and regrasp planners are all or nothing where it suits them: then `end` is `from` and
+/// `fraction` 0.
+pub trait LocalPlanner: Send + Sync {
+    /// Goes from `from` towards `to`; restarts and fills `path` if given (`None` = check only, store nothing).
+    fn connect(
+        &self,
+        task: &Task<'_>,
+        from: &Configuration,
+        to: &Target<'_>,
+        path: Option<&mut Path>,
+        context: &mut Context<'_>,
+    ) -> Result<Reached, CallError>;
+}
+const _: Option<&dyn LocalPlanner> = None; // must stay object safe

@@ -1,0 +1,121 @@
+//! Role 2: whether a grasp is stable, by what margin, with which certificate.
+
+use crate::{CallError, Context, FingerIndex, FingerSet, Grasp, Hint, Vec3};
+
+/// The verdict on one grasp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stability {
+    /// Stable.
+    Stable,
+    /// Not stable.
+    Unstable,
+    /// Too close to the boundary to say: treated as not stable.
+    Undecided,
+}
+
+impl Stability {
+    /// Whether the grasp counts as stable.
+    pub fn is_stable(self) -> bool {
+        self == Self::Stable
+    }
+}
+
+/// Something that anybody can check by arithmetic and that proves a verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Certificate {
+    /// Contact forces on the object in its frame (N per unit, one for each contact) with torques about the *inward* normal
+    /// (N·m): balanced, strictly inside every cone.
+    InternalForce {
+        /// Force at each contact, in O.
+        forces_O: Vec<Vec3>,
+        /// Torsional torque about the inward normal at each contact.
+        torsions: Vec<f64>,
+    },
+    /// A twist (velocity of the object's points at the contacts' centroid, angular velocity), against which no contact
+    /// resists: the grasp is not closed.
+    SeparatingTwist {
+        /// Linear velocity, in O, of the point of O at the contacts' centroid.
+        v_O: Vec3,
+        /// Angular velocity, in O.
+        w_O: Vec3,
+    },
+    /// None: the verdict is the test's word.
+    None,
+}
+
+/// A verdict with its margin and certificate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assessment {
+    /// The verdict; the same as [`StabilityTest::test`] gives.
+    pub stability: Stability,
+    /// A certified lower bound of the margin, in the unit that the plugin documents; 0 or less when not stable.
+    pub margin_lower: f64,
+    /// An upper bound of the margin.
+    pub margin_upper: f64,
+    /// The proof of the verdict.
+    pub certificate: Certificate,
+}
+
+/// Decides whether a grasp can hold the object.
+///
+/// Laws: invariant under a rigid motion of the object's frame and under permutation of the contacts; verdicts are
+/// monotone in the friction and, for closure tests, in added contacts. Pure: equal arguments give the same verdict
+/// whatever the hint holds.
+pub trait StabilityTest: Send + Sync {
+    /// Whether the grasp is stable. The planner's inner loop: no allocation.
+    ///
+    /// Engine guarantee: finite inputs, unit normals, at least one contact. `hint` may be left from an earlier call with a
+    /// grasp nearby. A cone that the test cannot handle is [`CallError::Unsupported`].
+    fn test(
+        &self,
+        grasp: &Grasp<'_>,
+        hint: &mut Hint,
+        context: &mut Context<'_>,
+    ) -> Result<Stability, CallError>;
+
+    /// The verdict with margin and certificate, for grasps that are reported.
+    ///
+    /// `length` (m) scales torques where margins of different grasps are compared; `None` takes the grasp's own size.
+    /// `center_O` (m) is the point that torques are taken about; `None` takes the contacts' centroid.
+    fn assess(
+        &self,
+        grasp: &Grasp<'_>,
+        length: Option<f64>,
+        center_O: Option<Vec3>,
+        context: &mut Context<'_>,
+    ) -> Result<Assessment, CallError>;
+
+    /// The fingers of the grasp that may be lifted, the rest being stable.
+    ///
+    /// Stops early where fewer than `enough` fingers can still be found, and then returns what it has.
+    fn liftable(
+        &self,
+        grasp: &Grasp<'_>,
+        enough: usize,
+        context: &mut Context<'_>,
+    ) -> Result<FingerSet, CallError> {
+        let mut liftable = FingerSet::EMPTY;
+        let contacts = grasp.contacts();
+        for (tried, finger) in contacts.iter().map(|contact| contact.finger).enumerate() {
+            if liftable.len() + contacts.len() - tried < enough {
+                break;
+            }
+            if self.stable_without(grasp, finger, context)? {
+                liftable = liftable.with(finger);
+            }
+        }
+        Ok(liftable)
+    }
+
+    /// Whether the grasp is stable without `finger`.
+    fn stable_without(
+        &self,
+        grasp: &Grasp<'_>,
+        finger: FingerIndex,
+        context: &mut Context<'_>,
+    ) -> Result<bool, CallError> {
+        let rest = grasp.without(finger);
+        Ok(!rest.contacts().is_empty() && self.test(&rest, &mut Hint::default(), context)?.is_stable())
+    }
+}
+const _: Option<&dyn StabilityTest> = None; // must stay object safe

@@ -1,0 +1,11 @@
+//! Descriptions: hand, object, obstacles, start and goals as plain data, the way files hold them. SI units.
+
+mod hand;
+mod limits;
+mod object;
+mod problem;
+
+pub use hand::*;
+pub use limits::*;
+pub use object::*;
+pub use problem::*;

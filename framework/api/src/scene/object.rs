@@ -1,0 +1,175 @@
+//! Shapes, objects and obstacles.
+
+use super::PoseDescription;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A shape of a link, the palm or an obstacle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Shape {
+    /// A ball about the origin.
+    Sphere {
+        /// Radius (m).
+        radius: f64,
+    },
+    /// A box about the origin, along the axes.
+    Box {
+        /// Edge lengths (m).
+        size: [f64; 3],
+    },
+    /// All points within `radius` of a segment.
+    Capsule {
+        /// One end of the segment (m).
+        from: [f64; 3],
+        /// The other end (m).
+        to: [f64; 3],
+        /// Radius (m).
+        radius: f64,
+    },
+    /// Everything with `normal · x ≤ offset`.
+    HalfSpace {
+        /// Outward normal; its length does not matter.
+        normal: [f64; 3],
+        /// Distance of the plane from the origin along the normal (m).
+        offset: f64,
+    },
+    /// A closed mesh.
+    Mesh(MeshSource),
+}
+
+/// A shape with its place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlacedShape {
+    /// The shape.
+    pub shape: Shape,
+    /// Its pose in the frame of what it belongs to.
+    #[serde(default)]
+    pub pose: PoseDescription,
+}
+
+/// Something fixed to the hand's frame that nothing may touch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObstacleDescription {
+    /// What reports call it.
+    #[serde(default)]
+    pub name: String,
+    /// The shape.
+    pub shape: Shape,
+    /// Its pose in the hand's frame.
+    #[serde(default)]
+    pub pose: PoseDescription,
+}
+
+/// Where a mesh comes from: a file, or the mesh itself (as plan files carry it).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct MeshSource {
+    /// An STL, OBJ or PLY file, relative to the file that names it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// What lengths are multiplied with: 0.001 for a file in millimetres. Default 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
+    /// Turn the mesh inside out after reading. Default false.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flip: Option<bool>,
+    /// Vertices (m), instead of a file.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub vertices: Vec<[f64; 3]>,
+    /// Facets as counter-clockwise indices of vertices seen from outside, instead of a file.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub facets: Vec<[u32; 3]>,
+}
+
+/// The shape of the object: a primitive, turned into a closed mesh about the origin, or a mesh.
+///
+/// `facets` is the wished number of facets; the mesh has the nearest number that the shape's pattern allows. The planner and the verifier
+/// take the facets as the true surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum ObjectShape {
+    /// A ball.
+    Sphere {
+        /// Radius (m).
+        radius: f64,
+        /// Wished number of facets.
+        #[serde(default = "default_facets")]
+        facets: usize,
+    },
+    /// An ellipsoid along the axes.
+    Ellipsoid {
+        /// Half the length along x, y and z (m).
+        semi_axes: [f64; 3],
+        /// Wished number of facets.
+        #[serde(default = "default_facets")]
+        facets: usize,
+    },
+    /// A box along the axes: 12 facets.
+    Cuboid {
+        /// Edge lengths (m).
+        size: [f64; 3],
+    },
+    /// A cylinder along z.
+    Cylinder {
+        /// Radius (m).
+        radius: f64,
+        /// Length along z (m).
+        height: f64,
+        /// Wished number of facets.
+        #[serde(default = "default_facets")]
+        facets: usize,
+    },
+    /// A cylinder along z with half balls at its ends.
+    Capsule {
+        /// Radius (m).
+        radius: f64,
+        /// Length of the cylindrical part along z (m).
+        height: f64,
+        /// Wished number of facets.
+        #[serde(default = "default_facets")]
+        facets: usize,
+    },
+    /// A ring about z.
+    Torus {
+        /// Distance of the tube's centre from the z axis (m).
+        ring_radius: f64,
+        /// Radius of the tube (m).
+        tube_radius: f64,
+        /// Wished number of facets.
+        #[serde(default = "default_facets")]
+        facets: usize,
+    },
+    /// A mesh.
+    Mesh(MeshSource),
+}
+
+/// The object that the hand holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectDescription {
+    /// What reports call it.
+    #[serde(default = "default_object_name")]
+    pub name: String,
+    /// Its shape, in the object's frame O.
+    pub shape: ObjectShape,
+    /// Mass (kg), uniformly spread.
+    #[serde(default = "default_mass")]
+    pub mass: f64,
+    /// Coefficient of friction between object and fingertips, no unit.
+    pub friction: f64,
+}
+
+fn default_facets() -> usize {
+    1280
+}
+
+fn default_object_name() -> String {
+    "object".into()
+}
+
+fn default_mass() -> f64 {
+    0.1
+}

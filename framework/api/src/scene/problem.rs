@@ -1,0 +1,164 @@
+//! A planning problem as plain data: what a scenario file says, and what a plan file repeats.
+
+use super::{HandDescription, Limits, ObjectDescription, ObstacleDescription};
+use crate::{Pose, Rotation, Vec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A pose: a position, and an orientation as a quaternion or as axis and angle.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PoseDescription {
+    /// Position (m).
+    #[serde(default)]
+    pub position: [f64; 3],
+    /// Orientation as a quaternion w, x, y, z; normalised when read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orientation: Option<[f64; 4]>,
+    /// Orientation as a turn about this axis, instead of a quaternion; needs `angle_deg`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axis: Option<[f64; 3]>,
+    /// The angle of the turn about `axis` (degrees).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle_deg: Option<f64>,
+}
+
+impl PoseDescription {
+    /// The pose; `Err` says which key is wrong and why.
+    pub fn pose(&self) -> Result<Pose, String> {
+        if !self.position.iter().all(|x| x.is_finite()) {
+            return Err("`position` must be three finite numbers".into());
+        }
+        let rotation = match (self.orientation, self.axis, self.angle_deg) {
+            (None, None, None) => Rotation::identity(),
+            (Some([w, x, y, z]), None, None) => {
+                let q = nalgebra::Quaternion::new(w, x, y, z);
+                if !(q.norm().is_finite() && q.norm() > 1e-9) {
+                    return Err(
+                        "`orientation` must be a quaternion w, x, y, z that is finite and not zero".into()
+                    );
+                }
+                Rotation::from_quaternion(q)
+            }
+            (None, Some(axis), Some(angle)) => {
+                let axis = Vec3::from(axis);
+                if !(axis.norm().is_finite() && axis.norm() > 1e-9 && angle.is_finite()) {
+                    return Err("`axis` must be finite and not zero, `angle_deg` finite".into());
+                }
+                Rotation::from_scaled_axis(axis.normalize() * angle.to_radians())
+            }
+            _ => return Err("give either `orientation`, or both `axis` and `angle_deg`".into()),
+        };
+        Ok(Pose::from_parts(Vec3::from(self.position).into(), rotation))
+    }
+}
+
+impl From<&Pose> for PoseDescription {
+    fn from(pose: &Pose) -> Self {
+        let q = pose.rotation.quaternion();
+        Self {
+            position: pose.translation.vector.into(),
+            orientation: Some([q.w, q.i, q.j, q.k]),
+            axis: None,
+            angle_deg: None,
+        }
+    }
+}
+
+/// How one finger takes part in a given grasp.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FingerGrasp {
+    /// Contact point on the object, in the object's frame (m), within 1 mm of the surface; absent for a free finger.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<[f64; 3]>,
+    /// Joint positions (rad); where absent, inverse kinematics for a contact and the rest posture for a free finger.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joints: Option<Vec<f64>>,
+}
+
+/// Where the object starts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StartDescription {
+    /// The object's pose in the hand's frame.
+    pub pose: PoseDescription,
+    /// One entry for each finger; where absent, a grasp is found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub grasp: Option<Vec<FingerGrasp>>,
+}
+
+/// Where the object goes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GoalDescription {
+    /// The object's pose in the hand's frame.
+    pub pose: PoseDescription,
+    /// One entry for each finger; where absent, any admissible grasp will do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub grasp: Option<Vec<FingerGrasp>>,
+}
+
+/// The positions in which the object's origin may be sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Workspace {
+    /// Lowest coordinates in the hand's frame (m).
+    pub lower: [f64; 3],
+    /// Highest coordinates in the hand's frame (m).
+    pub upper: [f64; 3],
+}
+
+/// A whole problem: hand, object, obstacles, start, goals and limits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Problem {
+    /// The hand.
+    pub hand: HandDescription,
+    /// The object.
+    pub object: ObjectDescription,
+    /// Obstacles fixed to the hand's frame.
+    #[serde(default)]
+    pub obstacle: Vec<ObstacleDescription>,
+    /// Acceleration of gravity in the hand's frame (m/s²).
+    #[serde(default = "default_gravity")]
+    pub gravity: [f64; 3],
+    /// Where the object starts.
+    pub start: StartDescription,
+    /// The goals, visited in turn.
+    pub goal: Vec<GoalDescription>,
+    /// Where the object may be sampled; by default a box about start and goals, 15 mm wider on each side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub workspace: Option<Workspace>,
+    /// Tolerances, resolution and budgets.
+    #[serde(default)]
+    pub limits: Limits,
+}
+
+fn default_gravity() -> [f64; 3] {
+    [0.0, 0.0, -9.81]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn poses_are_read_in_both_forms_and_refused_in_none() {
+        let axis =
+            PoseDescription { axis: Some([0.0, 0.0, 2.0]), angle_deg: Some(90.0), ..Default::default() };
+        let pose = axis.pose().unwrap();
+        assert!(
+            (pose * nalgebra::Point3::new(1.0, 0.0, 0.0) - nalgebra::Point3::new(0.0, 1.0, 0.0)).norm()
+                < 1e-12
+        );
+        let back = PoseDescription::from(&pose).pose().unwrap();
+        assert!(crate::angle_between(&back.rotation, &pose.rotation) < 1e-12);
+        let half = PoseDescription { axis: Some([0.0, 0.0, 1.0]), ..Default::default() };
+        assert!(half.pose().unwrap_err().contains("angle_deg"));
+        let zero = PoseDescription { orientation: Some([0.0; 4]), ..Default::default() };
+        assert!(zero.pose().is_err());
+        let nan = PoseDescription { position: [f64::NAN, 0.0, 0.0], ..Default::default() };
+        assert!(nan.pose().is_err());
+    }
+}

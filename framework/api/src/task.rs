@@ -1,0 +1,81 @@
+//! The immutable task that all calls of one search share.
+
+use crate::{
+    CallError, Clearance, Configuration, ContactModel, Context, FingerSet, Grasp, GraspContact, Hand,
+    ObjectModel, Pose, Reason, Resolution, StabilityTest, SurfaceParam, Tolerances, Vec3,
+};
+
+/// The planner's predicate for nodes: collision-free, stable, and easy to leave by transfers and regrasps.
+///
+/// A heuristic that makes the reduction property work in practice: nodes must pass it; a given start or goal that fails it is
+/// warned about, not refused.
+pub trait Admissible: Send + Sync {
+    /// `None` if the configuration may become a node, otherwise why not.
+    fn admit(
+        &self,
+        task: &Task<'_>,
+        q: &Configuration,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError>;
+
+    /// The cheap part, for one finger that a sampler has just placed: contact away from sharp edges, finger free of palm, obstacles,
+    /// object and the fingers in `placed`, able to retreat. `None` if it may stay.
+    fn admit_finger(
+        &self,
+        task: &Task<'_>,
+        q: &Configuration,
+        finger: crate::FingerIndex,
+        placed: FingerSet,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError>;
+}
+const _: Option<&dyn Admissible> = None; // must stay object safe
+
+/// Everything that the calls of one search share and nobody changes.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    /// Kinematics and limits of the hand.
+    pub hand: &'a dyn Hand,
+    /// Collision and distance.
+    pub clearance: &'a dyn Clearance,
+    /// Which wrenches contacts transmit.
+    pub contact_model: &'a dyn ContactModel,
+    /// Which grasps are stable.
+    pub stability: &'a dyn StabilityTest,
+    /// The object's surface.
+    pub surface: &'a dyn SurfaceParam,
+    /// Which configurations may become nodes.
+    pub admissible: &'a dyn Admissible,
+    /// The object.
+    pub object: &'a ObjectModel,
+    /// Acceleration of gravity in H (m/s²).
+    pub g_H: Vec3,
+    /// What a plan must keep.
+    pub tolerances: &'a Tolerances,
+    /// How finely the planner works.
+    pub resolution: &'a Resolution,
+    /// Lowest and highest coordinates of the object's origin in H (m) for samples.
+    pub workspace: (Vec3, Vec3),
+    /// The object's poses at the start and the goals of the search, in turn; samplers may draw near the motion between them.
+    pub landmarks: &'a [Pose],
+}
+
+impl<'a> Task<'a> {
+    /// The friction coefficient to plan with: the object's, less the planner's margin.
+    pub fn planning_friction(&self) -> f64 {
+        self.object.friction * self.resolution.friction_margin
+    }
+
+    /// The grasp of the fingers in `holding` (those of them that touch) at `q`, with the planning friction.
+    pub fn grasp(&self, q: &Configuration, holding: FingerSet) -> Grasp<'a> {
+        let mu = self.planning_friction();
+        let mut grasp = Grasp::new(q.X_HO.rotation.inverse() * self.g_H);
+        for (finger, contact) in q.contacts.iter() {
+            if let (Some(contact), true) = (contact, holding.contains(finger)) {
+                let cone = self.contact_model.cone(contact, mu);
+                grasp.push(GraspContact { finger, p_OC: contact.p_OC, n_O: contact.n_O, cone });
+            }
+        }
+        grasp
+    }
+}

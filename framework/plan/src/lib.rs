@@ -1,0 +1,5 @@
+//! The plan file: format, reading, writing, timing.
+
+mod motion;
+
+pub use motion::*;
