@@ -1,0 +1,135 @@
+//! `graph-strategy/interleaved`: the paper's Algorithm 1 with a biased α.
+//!
+//! While start and goal lie in different components, draw α: 0 explores GS_n (Algorithm 2), 1 tries to connect a random
+//! node with another component by transfer and regrasps (Algorithm 3). The paper wants the probability of α = 1 low at
+//! first and rising as the graph grows, and leaves its law open; ours is
+//! `P(α = 1) = start + (end - start) · (1 - exp(-nodes / growth))`.
+//!
+//! Source: A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007,
+//! section IV.
+
+use regrasp_api::{
+    Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, NodeId, Settings,
+    SettingsError, Slot, check_range, check_settings, inventory,
+};
+use serde::{Deserialize, Serialize};
+
+/// Settings of [`Interleaved`]: the law of α.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct InterleavedSettings {
+    /// Probability of α = 1 for an empty graph, in 0..=1.
+    pub start: f64,
+    /// Probability of α = 1 for a large graph, in 0..=1.
+    pub end: f64,
+    /// Number of nodes after which 63 % of the way from `start` to `end` is made, 0.1..=1e6.
+    pub growth: f64,
+}
+
+impl Default for InterleavedSettings {
+    /// Our choice: the paper leaves the law open.
+    fn default() -> Self {
+        Self { start: 0.1, end: 0.5, growth: 20.0 }
+    }
+}
+
+impl Settings for InterleavedSettings {
+    fn validate(&self) -> Result<(), SettingsError> {
+        check_range("start", self.start, 0.0, 1.0)?;
+        check_range("end", self.end, 0.0, 1.0)?;
+        check_range("growth", self.growth, 0.1, 1e6)
+    }
+}
+
+/// The paper's strategy.
+#[derive(Clone, Copy, Debug)]
+pub struct Interleaved {
+    settings: InterleavedSettings,
+}
+
+impl Interleaved {
+    /// A strategy with the given law of α.
+    pub fn new(settings: InterleavedSettings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        Ok(Self { settings })
+    }
+
+    /// The probability of α = 1 in a graph of `nodes` nodes.
+    fn probability(&self, nodes: usize) -> f64 {
+        let InterleavedSettings { start, end, growth } = self.settings;
+        start + (end - start) * (1.0 - (-(nodes as f64) / growth).exp())
+    }
+}
+
+impl GraphStrategy for Interleaved {
+    fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError> {
+        context.count_call(Slot::GraphStrategy);
+        if graph.joined() {
+            return Ok(Action::Query);
+        }
+        if let Some(action) = join_ends(graph) {
+            return Ok(action);
+        }
+        let (generated, most) = graph.generated();
+        if generated >= most {
+            return Ok(Action::Stop);
+        }
+        let connect = context.random.unit() < self.probability(graph.node_count());
+        let pair = if connect { pair_to_connect(graph, context) } else { None };
+        Ok(match pair {
+            Some((a, b)) => Action::Connect(a, b, EdgeKind::TransferRegrasp),
+            None => Action::Explore(Link::Components),
+        })
+    }
+}
+
+/// Start and goals enter the graph as new nodes do: by a path in GS_n to each component that has not been tried yet.
+fn join_ends(graph: &dyn GraphView) -> Option<Action> {
+    let ends = std::iter::once(graph.start()).chain(graph.goals().iter().copied());
+    let untried = |end: NodeId| {
+        nearest_of_each_component(graph, end)
+            .into_iter()
+            .find(|&near| !graph.attempted(end, near, EdgeKind::Grasp))
+    };
+    ends.filter_map(|end| untried(end).map(|near| Action::Connect(end, near, EdgeKind::Grasp))).next()
+}
+
+/// A random node and the nearest node of another component that was not tried with it.
+fn pair_to_connect(graph: &dyn GraphView, context: &mut Context<'_>) -> Option<(NodeId, NodeId)> {
+    let node = NodeId(context.random.index(graph.node_count()) as u32);
+    let closest = nearest_of_each_component(graph, node)
+        .into_iter()
+        .filter(|&other| !graph.attempted(node, other, EdgeKind::TransferRegrasp))
+        .min_by(|&a, &b| graph.distance(node, a).total_cmp(&graph.distance(node, b)));
+    closest.map(|other| (node, other))
+}
+
+/// The node nearest to `node` in each component but its own, components in ascending order.
+fn nearest_of_each_component(graph: &dyn GraphView, node: NodeId) -> Vec<NodeId> {
+    let own = graph.component(node);
+    let mut best: Vec<Option<(f64, NodeId)>> = vec![None; graph.node_count()];
+    for other in (0..graph.node_count() as u32).map(NodeId) {
+        let component = graph.component(other);
+        if component == own {
+            continue;
+        }
+        let distance = graph.distance(node, other);
+        let place = &mut best[component.0 as usize];
+        if place.is_none_or(|(least, _)| distance < least) {
+            *place = Some((distance, other));
+        }
+    }
+    best.into_iter().flatten().map(|(_, nearest)| nearest).collect()
+}
+
+inventory::submit! {
+    Entry {
+        id: "graph-strategy/interleaved",
+        slots: &[Slot::GraphStrategy],
+        summary: "explores GS_n and connects components in turn, by the paper's biased α",
+        references: &["A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007, Algorithm 1"],
+        schema: InterleavedSettings::schema,
+        check: check_settings::<InterleavedSettings>,
+        build: Build::GraphStrategy(|json, _| Ok(Box::new(Interleaved::new(InterleavedSettings::from_json(json)?)?))),
+    }
+}

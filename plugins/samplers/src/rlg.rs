@@ -1,0 +1,200 @@
+//! `sampler/rlg`: the random loop generator.
+//!
+//! Each loop finger-object-palm is split in an *active* part, drawn at random, and a *passive* part, solved by inverse
+//! kinematics: active are the object's pose, the contacts and the spare joints of redundant fingers; passive are the
+//! three joints that bring each fingertip to its contact (J. Cortés, T. Siméon, J.-P. Laumond, "A random loop generator
+//! for planning the motions of closed kinematic chains using PRM methods", ICRA 2002).
+//!
+//! Contacts are drawn by rejection, the cheapest test first: a fingertip outside the ball that the finger can reach costs
+//! a few nanoseconds, so that about thirty tries a finger are cheaper than listing the facets within reach.
+
+mod pose;
+
+use regrasp_api::{
+    Build, CallError, ClosedChainSampler, Configuration, Contact, Context, Entry, FingerIndex, FingerJoints,
+    FingerSet, PerFinger, Pose, PoseRequest, Reason, Settings, SettingsError, Slot, Task, TipRule,
+    check_count, check_range, check_settings, inventory,
+};
+use serde::{Deserialize, Serialize};
+
+/// Settings of [`Rlg`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RlgSettings {
+    /// Poses of the object that one call tries, 1..=100000.
+    pub poses: usize,
+    /// Contacts that are tried for each finger at one pose, 1..=10000.
+    pub contacts: usize,
+    /// The fraction of poses drawn with any orientation, in 0..=1; the others are drawn near the motion from start to goal.
+    pub anywhere: f64,
+    /// How far (degrees, 0..=180) the latter may turn away from that motion.
+    pub spread_deg: f64,
+}
+
+impl Default for RlgSettings {
+    /// Our choices: the paper names no numbers.
+    fn default() -> Self {
+        Self { poses: 100, contacts: 30, anywhere: 0.2, spread_deg: 30.0 }
+    }
+}
+
+impl Settings for RlgSettings {
+    fn validate(&self) -> Result<(), SettingsError> {
+        check_count("poses", self.poses, 1, 100_000)?;
+        check_count("contacts", self.contacts, 1, 10_000)?;
+        check_range("anywhere", self.anywhere, 0.0, 1.0)?;
+        check_range("spread_deg", self.spread_deg, 0.0, 180.0)
+    }
+}
+
+/// The random loop generator.
+#[derive(Clone, Copy, Debug)]
+pub struct Rlg {
+    settings: RlgSettings,
+}
+
+impl Rlg {
+    /// A sampler with the given settings.
+    pub fn new(settings: RlgSettings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        Ok(Self { settings })
+    }
+
+    /// One try at one pose of the object.
+    fn try_pose(
+        &self,
+        task: &Task<'_>,
+        X_HO: Pose,
+        holding: FingerSet,
+        context: &mut Context<'_>,
+    ) -> Result<Result<Configuration, Reason>, CallError> {
+        if task.clearance.object_free(&X_HO).is_err() {
+            return Ok(Err(Reason::Collision));
+        }
+        let count = task.hand.finger_count();
+        let mut q = Configuration {
+            X_HO,
+            joints: PerFinger::from_fn(count, |finger| task.hand.finger(finger).rest),
+            contacts: PerFinger::filled(count, None),
+        };
+        let mut placed = FingerSet::EMPTY;
+        for finger in q.joints.fingers() {
+            let reason = if holding.contains(finger) {
+                self.place(task, &mut q, finger, placed, context)?
+            } else {
+                rest_blocked(task, &q, finger, placed)
+            };
+            if let Some(reason) = reason {
+                return Ok(Err(reason));
+            }
+            placed = placed.with(finger);
+        }
+        Ok(match task.admissible.admit(task, &q, context)? {
+            None => Ok(q),
+            Some(reason) => Err(reason),
+        })
+    }
+
+    /// Gives `finger` a contact beside the fingers already placed; the reason of the last failure if it finds none.
+    fn place(
+        &self,
+        task: &Task<'_>,
+        q: &mut Configuration,
+        finger: FingerIndex,
+        placed: FingerSet,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError> {
+        let model = task.hand.finger(finger);
+        let radius = task.hand.fingertip_radius();
+        let mut near = model.rest;
+        let mut last = Reason::Reach;
+        for _ in 0..self.settings.contacts {
+            let contact = task.surface.sample(&mut context.random);
+            let p_HF = q.X_HO.rotation * contact.tip_center(radius) + q.X_HO.translation.vector;
+            if (p_HF - model.p_HReach).norm_squared() > model.reach * model.reach {
+                continue;
+            }
+            for &joint in &model.spare {
+                near[joint] = context.random.range(model.joints[joint].lower, model.joints[joint].upper);
+            }
+            let Some(joints) = task.hand.inverse(finger, &p_HF, &near) else { continue };
+            (q.joints[finger], q.contacts[finger]) = (joints, Some(contact));
+            match task.admissible.admit_finger(task, q, finger, placed, context)? {
+                None => return Ok(None),
+                Some(reason) => last = reason,
+            }
+        }
+        Ok(Some(last))
+    }
+}
+
+/// Why a finger cannot rest free at `q` beside the fingers already placed; `None` if it can.
+fn rest_blocked(
+    task: &Task<'_>,
+    q: &Configuration,
+    finger: FingerIndex,
+    placed: FingerSet,
+) -> Option<Reason> {
+    let joints: &FingerJoints = &q.joints[finger];
+    let clear = TipRule::Clear(task.resolution.clearance);
+    let free = task.clearance.finger_free(finger, joints, &q.X_HO, clear).is_ok()
+        && placed
+            .iter()
+            .all(|other| task.clearance.fingers_free((finger, joints), (other, &q.joints[other])).is_ok());
+    if free { None } else { Some(Reason::Collision) }
+}
+
+impl ClosedChainSampler for Rlg {
+    fn sample(
+        &self,
+        task: &Task<'_>,
+        pose: PoseRequest<'_>,
+        holding: FingerSet,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Configuration>, CallError> {
+        context.count_call(Slot::Sampler);
+        for _ in 0..self.settings.poses {
+            context.proceed()?;
+            let X_HO = pose::draw(task, pose, &self.settings, &mut context.random);
+            match self.try_pose(task, X_HO, holding, context)? {
+                Ok(q) => return Ok(Some(q)),
+                Err(reason) => context.reject(Slot::Sampler, reason),
+            };
+        }
+        Ok(None)
+    }
+
+    fn close(
+        &self,
+        task: &Task<'_>,
+        X_HO: &Pose,
+        contacts: &PerFinger<Option<Contact>>,
+        near: &Configuration,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Configuration>, CallError> {
+        let mut q = Configuration { X_HO: *X_HO, joints: near.joints, contacts: *contacts };
+        for finger in q.joints.fingers() {
+            let Some(p_HF) = q.contact_tip_center(finger, task.hand.fingertip_radius()) else { continue };
+            match task.hand.inverse(finger, &p_HF, &near.joints[finger]) {
+                Some(joints) => q.joints[finger] = joints,
+                None => {
+                    context.reject(Slot::Sampler, Reason::Reach);
+                    return Ok(None);
+                }
+            }
+        }
+        Ok(Some(q))
+    }
+}
+
+inventory::submit! {
+    Entry {
+        id: "sampler/rlg",
+        slots: &[Slot::Sampler],
+        summary: "random loop generator: pose and contacts drawn, joints by inverse kinematics",
+        references: &["J. Cortés, T. Siméon, J.-P. Laumond, A random loop generator for planning the motions of closed kinematic chains using PRM methods, ICRA 2002"],
+        schema: RlgSettings::schema,
+        check: check_settings::<RlgSettings>,
+        build: Build::Sampler(|json, _| Ok(Box::new(Rlg::new(RlgSettings::from_json(json)?)?))),
+    }
+}
