@@ -1,8 +1,8 @@
 //! The immutable task that all calls of one search share.
 
 use crate::{
-    CallError, Clearance, Configuration, ContactModel, Context, FingerSet, Grasp, GraspContact, Hand,
-    ObjectModel, Pose, Reason, Resolution, StabilityTest, SurfaceParam, Tolerances, Vec3,
+    CallError, Clearance, Configuration, ContactModel, Context, FingerIndex, FingerSet, Grasp, GraspContact,
+    Hand, ObjectModel, Pose, Reason, Resolution, StabilityTest, SurfaceParam, Tolerances, Vec3,
 };
 
 /// The planner's predicate for nodes: collision-free, stable, and easy to leave by transfers and regrasps.
@@ -10,24 +10,44 @@ use crate::{
 /// A heuristic that makes the reduction property work in practice: nodes must pass it; a given start or goal that fails it is
 /// warned about, not refused.
 pub trait Admissible: Send + Sync {
-    /// `None` if the configuration may become a node, otherwise why not.
-    fn admit(
+    /// One finger that a sampler has just placed: contact away from sharp edges, finger free of palm, obstacles, object
+    /// and the fingers in `placed`, able to retreat. A finger without contact must be free of all of them. `None` if it may stay.
+    fn admit_finger(
+        &self,
+        task: &Task<'_>,
+        q: &Configuration,
+        finger: FingerIndex,
+        placed: FingerSet,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError>;
+
+    /// The grasp as a whole, its fingers having passed [`Admissible::admit_finger`]: stable, and enough of its fingers liftable.
+    fn admit_grasp(
         &self,
         task: &Task<'_>,
         q: &Configuration,
         context: &mut Context<'_>,
     ) -> Result<Option<Reason>, CallError>;
 
-    /// The cheap part, for one finger that a sampler has just placed: contact away from sharp edges, finger free of palm, obstacles,
-    /// object and the fingers in `placed`, able to retreat. `None` if it may stay.
-    fn admit_finger(
+    /// `None` if the configuration may become a node, otherwise why not: the object, each finger, the grasp.
+    fn admit(
         &self,
         task: &Task<'_>,
         q: &Configuration,
-        finger: crate::FingerIndex,
-        placed: FingerSet,
         context: &mut Context<'_>,
-    ) -> Result<Option<Reason>, CallError>;
+    ) -> Result<Option<Reason>, CallError> {
+        if task.clearance.object_free(&q.X_HO).is_err() {
+            return Ok(Some(Reason::Collision));
+        }
+        let mut placed = FingerSet::EMPTY;
+        for finger in q.joints.fingers() {
+            if let Some(reason) = self.admit_finger(task, q, finger, placed, context)? {
+                return Ok(Some(reason));
+            }
+            placed = placed.with(finger);
+        }
+        self.admit_grasp(task, q, context)
+    }
 }
 const _: Option<&dyn Admissible> = None; // must stay object safe
 

@@ -82,14 +82,14 @@ impl Rlg {
             let reason = if holding.contains(finger) {
                 self.place(task, &mut q, finger, placed, context)?
             } else {
-                rest_blocked(task, &q, finger, placed)
+                task.admissible.admit_finger(task, &q, finger, placed, context)?
             };
             if let Some(reason) = reason {
                 return Ok(Err(reason));
             }
             placed = placed.with(finger);
         }
-        Ok(match task.admissible.admit(task, &q, context)? {
+        Ok(match task.admissible.admit_grasp(task, &q, context)? {
             None => Ok(q),
             Some(reason) => Err(reason),
         })
@@ -126,22 +126,6 @@ impl Rlg {
         }
         Ok(Some(last))
     }
-}
-
-/// Why a finger cannot rest free at `q` beside the fingers already placed; `None` if it can.
-fn rest_blocked(
-    task: &Task<'_>,
-    q: &Configuration,
-    finger: FingerIndex,
-    placed: FingerSet,
-) -> Option<Reason> {
-    let joints: &FingerJoints = &q.joints[finger];
-    let clear = TipRule::Clear(task.resolution.clearance);
-    let free = task.clearance.finger_free(finger, joints, &q.X_HO, clear).is_ok()
-        && placed
-            .iter()
-            .all(|other| task.clearance.fingers_free((finger, joints), (other, &q.joints[other])).is_ok());
-    if free { None } else { Some(Reason::Collision) }
 }
 
 impl ClosedChainSampler for Rlg {
