@@ -1,1 +1,20 @@
-//! Under construction.
+//! The plugin registry: which plugins there are, which of them a run chose, and the eight objects that they become.
+//!
+//! A plugin crate submits its [`Entry`](regrasp_api::Entry) with `inventory`; the registry collects what the binary links, sorts it by id
+//! and refuses duplicates. The default choice of each slot, the paper's, lives here: the planner names no plugin.
+
+mod choice;
+mod error;
+mod near;
+mod plugin_set;
+mod registry;
+mod schema;
+#[cfg(test)]
+mod test_plugins;
+
+pub use choice::*;
+pub use error::*;
+pub use near::*;
+pub use plugin_set::*;
+pub use registry::*;
+pub use schema::*;

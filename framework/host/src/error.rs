@@ -1,0 +1,102 @@
+//! What can go wrong between a choice of plugins and the objects that they become.
+
+use crate::{Departure, did_you_mean};
+use regrasp_api::{BuildError, SettingsError, Slot};
+use thiserror::Error;
+
+/// A plugin cannot be found, configured or built.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum HostError {
+    /// Two linked plugins share an id.
+    #[error("two plugins have the id `{0}`")]
+    Duplicate(String),
+    /// An id is not `role/name` with the entry's own role.
+    #[error("the plugin id `{id}` should be `{role}/…`")]
+    WrongRole {
+        /// The id.
+        id: String,
+        /// The role that its builder fills.
+        role: &'static str,
+    },
+    /// No slot has this name.
+    #[error("there is no slot `{name}`; {}", or_all(.near, &slot_names()))]
+    UnknownSlot {
+        /// The name that was given.
+        name: String,
+        /// Slots that resemble it.
+        near: Vec<String>,
+    },
+    /// No plugin has this id in this slot.
+    #[error("there is no plugin `{id}` for `{}`; {}", .slot.name(), or_all(.near, .known))]
+    UnknownPlugin {
+        /// The slot that was to be filled.
+        slot: Slot,
+        /// The id that was given.
+        id: String,
+        /// Ids that resemble it.
+        near: Vec<String>,
+        /// Every id that fits the slot.
+        known: Vec<String>,
+    },
+    /// The plugin exists but fills other slots.
+    #[error("`{id}` does not fit `{}`; it fits `{}`", .slot.name(), .fits.join("`, `"))]
+    WrongSlot {
+        /// The slot that was to be filled.
+        slot: Slot,
+        /// The plugin.
+        id: String,
+        /// The slots that it fits.
+        fits: Vec<String>,
+    },
+    /// A setting has an unknown key or a wrong type.
+    #[error("`{id}`: {departure}")]
+    Form {
+        /// The plugin.
+        id: String,
+        /// What is wrong, and where.
+        departure: Departure,
+    },
+    /// The plugin refuses its settings.
+    #[error("`{id}`: {error}")]
+    Settings {
+        /// The plugin.
+        id: String,
+        /// Its word.
+        error: SettingsError,
+    },
+    /// The plugin cannot be built for this hand and object.
+    #[error("`{id}`: {error}")]
+    Build {
+        /// The plugin.
+        id: String,
+        /// Its word.
+        error: BuildError,
+    },
+    /// The hand has too few fingers for the contact model.
+    #[error(
+        "the hand has {fingers} fingers, but under `{contact_model}` a grasp needs {fewest} contacts to be stable, so that {} fingers are \
+         needed to let one of them move; use a hand with more fingers or another contact model",
+        .fewest + 1
+    )]
+    TooFewFingers {
+        /// How many fingers the hand has.
+        fingers: usize,
+        /// The contact model.
+        contact_model: String,
+        /// The fewest contacts that can be stable under it.
+        fewest: usize,
+    },
+}
+
+fn slot_names() -> Vec<String> {
+    Slot::ALL.iter().map(|slot| slot.name().to_owned()).collect()
+}
+
+fn or_all(near: &[String], known: &[String]) -> String {
+    match (near, known) {
+        ([], []) => "none is linked into this program".into(),
+        ([], known) => format!("there are `{}`", known.join("`, `")),
+        (near, _) => did_you_mean(near),
+    }
+}

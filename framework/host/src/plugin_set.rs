@@ -1,0 +1,171 @@
+//! The eight plugin objects of one run.
+
+use crate::choice::settings_text;
+use crate::{Choice, Choices, HostError, Registry};
+use regrasp_api::{
+    Build, BuildError, Built, ClosedChainSampler, ContactModel, GraphStrategy, LocalPlanner, Parts, Slot,
+    StabilityTest, SurfaceParam,
+};
+
+/// A plugin object for each slot.
+pub struct PluginSet {
+    /// Slot `contact-model`.
+    pub contact_model: Box<dyn ContactModel>,
+    /// Slot `stability-test`.
+    pub stability: Box<dyn StabilityTest>,
+    /// Slot `surface`.
+    pub surface: Box<dyn SurfaceParam>,
+    /// Slot `sampler`.
+    pub sampler: Box<dyn ClosedChainSampler>,
+    /// Slot `local-planner.grasp`.
+    pub grasp_planner: Box<dyn LocalPlanner>,
+    /// Slot `local-planner.transfer`.
+    pub transfer_planner: Box<dyn LocalPlanner>,
+    /// Slot `local-planner.regrasp`.
+    pub regrasp_planner: Box<dyn LocalPlanner>,
+    /// Slot `graph-strategy`.
+    pub strategy: Box<dyn GraphStrategy>,
+}
+
+impl PluginSet {
+    /// Builds the chosen plugins for a hand and an object, and refuses a hand with too few fingers for the contact model.
+    pub fn build(registry: &Registry, choices: &Choices, parts: &Parts<'_>) -> Result<Self, HostError> {
+        let builder = Builder { registry, choices, parts };
+        let contact_model = builder.contact_model()?;
+        builder.check_fingers(contact_model.as_ref())?;
+        Ok(Self {
+            contact_model,
+            stability: builder.stability()?,
+            surface: builder.surface()?,
+            sampler: builder.sampler()?,
+            grasp_planner: builder.local_planner(Slot::GraspPlanner)?,
+            transfer_planner: builder.local_planner(Slot::TransferPlanner)?,
+            regrasp_planner: builder.local_planner(Slot::RegraspPlanner)?,
+            strategy: builder.strategy()?,
+        })
+    }
+}
+
+struct Builder<'a> {
+    registry: &'a Registry,
+    choices: &'a Choices,
+    parts: &'a Parts<'a>,
+}
+
+/// Builds one slot's plugin; the entry's role is that of the slot, as `Registry::lookup` makes sure.
+macro_rules! build_slot {
+    ($builder:expr, $slot:expr, $role:ident) => {
+        $builder.build($slot, |build, text, parts| match build {
+            Build::$role(make) => make(text, parts),
+            _ => Err(BuildError::Unsupported("the entry builds a plugin of another role".into())),
+        })
+    };
+}
+
+impl Builder<'_> {
+    fn build<T: ?Sized>(
+        &self,
+        slot: Slot,
+        make: impl Fn(Build, &str, &Parts<'_>) -> Built<T>,
+    ) -> Result<Box<T>, HostError> {
+        let Choice { id, settings } = self.choices.choice(slot);
+        let entry = self.registry.lookup(slot, id)?;
+        make(entry.build, &settings_text(settings), self.parts)
+            .map_err(|error| HostError::Build { id: entry.id.to_owned(), error })
+    }
+
+    fn contact_model(&self) -> Result<Box<dyn ContactModel>, HostError> {
+        build_slot!(self, Slot::ContactModel, ContactModel)
+    }
+
+    fn stability(&self) -> Result<Box<dyn StabilityTest>, HostError> {
+        build_slot!(self, Slot::StabilityTest, StabilityTest)
+    }
+
+    fn surface(&self) -> Result<Box<dyn SurfaceParam>, HostError> {
+        build_slot!(self, Slot::Surface, Surface)
+    }
+
+    fn sampler(&self) -> Result<Box<dyn ClosedChainSampler>, HostError> {
+        build_slot!(self, Slot::Sampler, Sampler)
+    }
+
+    fn local_planner(&self, slot: Slot) -> Result<Box<dyn LocalPlanner>, HostError> {
+        build_slot!(self, slot, LocalPlanner)
+    }
+
+    fn strategy(&self) -> Result<Box<dyn GraphStrategy>, HostError> {
+        build_slot!(self, Slot::GraphStrategy, GraphStrategy)
+    }
+
+    fn check_fingers(&self, contact_model: &dyn ContactModel) -> Result<(), HostError> {
+        let (fingers, fewest) = (self.parts.hand.finger_count(), contact_model.fewest_contacts());
+        if fingers > fewest {
+            return Ok(());
+        }
+        let contact_model = self.choices.choice(Slot::ContactModel).id.clone();
+        Err(HostError::TooFewFingers { fingers, contact_model, fewest })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_plugins::{all_choices, entries};
+    use regrasp_api::{FingerIndex, FingerJoints, FingerModel, Hand, Mesh, ObjectModel, TipKinematics, Vec3};
+
+    struct Fingers(usize);
+    impl Hand for Fingers {
+        fn finger_count(&self) -> usize {
+            self.0
+        }
+
+        fn finger(&self, _: FingerIndex) -> &FingerModel {
+            unreachable!("the tests build no plugin that looks at fingers")
+        }
+
+        fn fingertip_radius(&self) -> f64 {
+            0.01
+        }
+
+        fn tip_center(&self, _: FingerIndex, _: &FingerJoints) -> Vec3 {
+            Vec3::zeros()
+        }
+
+        fn tip_kinematics(&self, _: FingerIndex, _: &FingerJoints) -> TipKinematics {
+            unreachable!("the tests build no plugin that moves fingers")
+        }
+
+        fn inverse(&self, _: FingerIndex, _: &Vec3, _: &FingerJoints) -> Option<FingerJoints> {
+            None
+        }
+    }
+
+    fn tetrahedron() -> ObjectModel {
+        let corners = [Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
+        let facets = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let mesh = Mesh::new(corners.to_vec(), facets).expect("a tetrahedron is closed");
+        ObjectModel::new(mesh, None, 0.1, 0.8)
+    }
+
+    fn build(fingers: usize) -> HostError {
+        let registry = Registry::new(entries()).unwrap();
+        let choices = all_choices().resolve(&registry).unwrap();
+        let object = tetrahedron();
+        let parts = Parts { object: &object, hand: &Fingers(fingers) };
+        PluginSet::build(&registry, &choices, &parts).err().unwrap()
+    }
+
+    #[test]
+    fn three_fingers_are_too_few_for_point_contacts() {
+        let text = build(3).to_string();
+        assert!(text.contains("the hand has 3 fingers"), "{text}");
+        assert!(text.contains("`contact-model/point`") && text.contains("4 fingers are needed"), "{text}");
+    }
+
+    #[test]
+    fn a_plugin_that_cannot_be_built_is_named() {
+        let text = build(4).to_string();
+        assert_eq!(text, "`stability-test/always`: for tests of the registry only");
+    }
+}

@@ -1,0 +1,387 @@
+//! Compares plain data with a JSON schema, so that a misspelt key or a wrong type is reported with its place and its likely meaning.
+//!
+//! Serde's own messages lose the path inside tagged enumerations; this walk keeps it. It knows the part of JSON Schema that `schemars`
+//! writes for plain structs, options, arrays and tagged enumerations; what it does not know it lets pass, for serde to judge.
+
+use crate::{did_you_mean, near};
+use serde_json::{Map, Value};
+use std::fmt;
+use thiserror::Error;
+
+/// One step into nested data.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// To the value of a key.
+    Key(String),
+    /// To an item, counted from 0.
+    Item(usize),
+}
+
+/// A place in nested data, written `goal[1].pose.position`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct KeyPath(pub Vec<Step>);
+
+impl KeyPath {
+    /// The path one key deeper.
+    #[must_use]
+    pub fn key(&self, key: &str) -> Self {
+        self.with(Step::Key(key.to_owned()))
+    }
+
+    /// The path one item deeper.
+    #[must_use]
+    pub fn item(&self, item: usize) -> Self {
+        self.with(Step::Item(item))
+    }
+
+    fn with(&self, step: Step) -> Self {
+        Self(self.0.iter().cloned().chain([step]).collect())
+    }
+}
+
+impl fmt::Display for KeyPath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, step) in self.0.iter().enumerate() {
+            match step {
+                Step::Key(key) if i > 0 => write!(f, ".{key}")?,
+                Step::Key(key) => write!(f, "{key}")?,
+                Step::Item(item) => write!(f, "[{item}]")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How data departs from a schema.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fault {
+    /// A key that the schema does not know; its path ends with it.
+    #[error("unknown key; {}", suggestion(.near, .known))]
+    UnknownKey {
+        /// Known keys that resemble it.
+        near: Vec<String>,
+        /// Every known key.
+        known: Vec<String>,
+    },
+    /// A key is missing.
+    #[error("the key `{key}` is missing")]
+    Missing {
+        /// The key.
+        key: String,
+    },
+    /// A value of the wrong type.
+    #[error("{found} is not {expected}")]
+    Type {
+        /// The type that the schema asks for.
+        expected: String,
+        /// The value that was found.
+        found: String,
+    },
+    /// A text that is none of the allowed ones.
+    #[error("{found} is not one of the allowed values; {}", suggestion(.near, .known))]
+    Choice {
+        /// The value that was found.
+        found: String,
+        /// Allowed values that resemble it.
+        near: Vec<String>,
+        /// Every allowed value.
+        known: Vec<String>,
+    },
+    /// A number below the schema's minimum or above its maximum.
+    #[error("{found} is outside {range}")]
+    Range {
+        /// The number that was found.
+        found: String,
+        /// The allowed range.
+        range: String,
+    },
+}
+
+fn suggestion(near: &[String], known: &[String]) -> String {
+    if near.is_empty() { format!("known are `{}`", known.join("`, `")) } else { did_you_mean(near) }
+}
+
+/// The first place where data depart from a schema.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("`{path}`: {fault}")]
+pub struct Departure {
+    /// Where.
+    pub path: KeyPath,
+    /// How.
+    pub fault: Fault,
+}
+
+/// Finds the first place, in the order of the keys, where `value` departs from `schema`.
+pub fn check_schema(value: &Value, schema: &Value) -> Result<(), Departure> {
+    Walk { root: schema }.check(value, schema, &KeyPath::default())
+}
+
+/// Adds the schema's defaults for keys that `settings` leaves out.
+pub fn fill_defaults(settings: &mut Map<String, Value>, schema: &Value) {
+    let properties = schema.get("properties").and_then(Value::as_object);
+    for (key, property) in properties.into_iter().flatten() {
+        if let (false, Some(default)) = (settings.contains_key(key), property.get("default")) {
+            settings.insert(key.clone(), default.clone());
+        }
+    }
+}
+
+struct Walk<'a> {
+    root: &'a Value,
+}
+
+impl<'a> Walk<'a> {
+    fn check(&self, value: &Value, schema: &'a Value, path: &KeyPath) -> Result<(), Departure> {
+        let schema = self.resolve(schema);
+        let alternatives = ["oneOf", "anyOf"].iter().find_map(|word| schema.get(word)?.as_array());
+        if let Some(alternatives) = alternatives {
+            return self.check_alternatives(value, alternatives, path);
+        }
+        check_type(value, schema, path)?;
+        match value {
+            Value::Object(object) => self.check_object(object, schema, path),
+            Value::Array(items) => self.check_items(items, schema, path),
+            _ => Ok(()),
+        }
+    }
+
+    fn resolve(&self, schema: &'a Value) -> &'a Value {
+        let name = schema.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix("#/$defs/"));
+        name.and_then(|name| self.root.get("$defs")?.get(name)).unwrap_or(schema)
+    }
+
+    fn check_object(
+        &self,
+        object: &Map<String, Value>,
+        schema: &'a Value,
+        path: &KeyPath,
+    ) -> Result<(), Departure> {
+        let Some(properties) = schema.get("properties").and_then(Value::as_object) else {
+            return Ok(());
+        };
+        let closed = schema.get("additionalProperties") == Some(&Value::Bool(false));
+        for (key, value) in object {
+            match properties.get(key) {
+                Some(property) => self.check(value, property, &path.key(key))?,
+                None if closed => return Err(unknown_key(key, properties, path)),
+                None => {}
+            }
+        }
+        let required = schema.get("required").and_then(Value::as_array).into_iter().flatten();
+        match required.filter_map(Value::as_str).find(|&key| !object.contains_key(key)) {
+            Some(key) => Err(depart(path, Fault::Missing { key: key.to_owned() })),
+            None => Ok(()),
+        }
+    }
+
+    fn check_items(&self, items: &[Value], schema: &'a Value, path: &KeyPath) -> Result<(), Departure> {
+        let bound = |word: &str| schema.get(word).and_then(Value::as_u64).map(|n| n as usize);
+        let (low, high) = (bound("minItems"), bound("maxItems"));
+        if low.is_some_and(|low| items.len() < low) || high.is_some_and(|high| items.len() > high) {
+            let expected = match (low, high) {
+                (Some(low), Some(high)) if low == high => format!("a list of {low} values"),
+                (low, None) => format!("a list of at least {} values", low.unwrap_or(0)),
+                (low, Some(high)) => format!("a list of {} to {high} values", low.unwrap_or(0)),
+            };
+            let found = format!("a list of {} values", items.len());
+            return Err(depart(path, Fault::Type { expected, found }));
+        }
+        let Some(item_schema) = schema.get("items") else { return Ok(()) };
+        items.iter().enumerate().try_for_each(|(i, item)| self.check(item, item_schema, &path.item(i)))
+    }
+
+    fn check_alternatives(
+        &self,
+        value: &Value,
+        alternatives: &'a [Value],
+        path: &KeyPath,
+    ) -> Result<(), Departure> {
+        let alternatives: Vec<&Value> = alternatives.iter().map(|schema| self.resolve(schema)).collect();
+        if alternatives.iter().all(|schema| schema.get("const").is_some() || schema.get("enum").is_some()) {
+            return check_words(value, &alternatives, path);
+        }
+        if let Some(tag) = alternatives.iter().find_map(|schema| tag_of(schema)) {
+            return self.check_tagged(value, &alternatives, tag, path);
+        }
+        // What is left is an option: the value may be null or something else.
+        let something = alternatives.iter().find(|schema| schema.get("type") != Some(&Value::from("null")));
+        match something {
+            Some(schema) if !value.is_null() => self.check(value, schema, path),
+            _ => Ok(()),
+        }
+    }
+
+    fn check_tagged(
+        &self,
+        value: &Value,
+        alternatives: &[&'a Value],
+        tag: &str,
+        path: &KeyPath,
+    ) -> Result<(), Departure> {
+        let Some(object) = value.as_object() else {
+            return Err(depart(path, Fault::Type { expected: "a table".into(), found: shown(value) }));
+        };
+        let Some(kind) = object.get(tag) else {
+            return Err(depart(path, Fault::Missing { key: tag.to_owned() }));
+        };
+        let word = |schema: &Value| schema["properties"][tag].get("const").cloned();
+        match alternatives.iter().find(|schema| word(schema).as_ref() == Some(kind)) {
+            Some(schema) => self.check(value, schema, path),
+            None => {
+                let known = alternatives.iter().filter_map(|schema| word(schema)).collect();
+                Err(depart(&path.key(tag), wrong_word(kind, known)))
+            }
+        }
+    }
+}
+
+/// The key whose constant value tells the alternatives of a tagged enumeration apart.
+fn tag_of(schema: &Value) -> Option<&str> {
+    let properties = schema.get("properties")?.as_object()?;
+    properties.iter().find(|(_, property)| property.get("const").is_some()).map(|(key, _)| key.as_str())
+}
+
+fn check_words(value: &Value, alternatives: &[&Value], path: &KeyPath) -> Result<(), Departure> {
+    let words = alternatives.iter().flat_map(|schema| {
+        let several = schema.get("enum").and_then(Value::as_array).into_iter().flatten();
+        schema.get("const").into_iter().chain(several).cloned()
+    });
+    let words: Vec<Value> = words.collect();
+    if words.contains(value) { Ok(()) } else { Err(depart(path, wrong_word(value, words))) }
+}
+
+fn wrong_word(value: &Value, words: Vec<Value>) -> Fault {
+    let known: Vec<String> = words.iter().filter_map(Value::as_str).map(str::to_owned).collect();
+    let near = near(value.as_str().unwrap_or_default(), known.iter().map(String::as_str));
+    Fault::Choice { found: shown(value), near, known }
+}
+
+fn unknown_key(key: &str, properties: &Map<String, Value>, path: &KeyPath) -> Departure {
+    let known: Vec<String> = properties.keys().cloned().collect();
+    let near = near(key, known.iter().map(String::as_str));
+    depart(&path.key(key), Fault::UnknownKey { near, known })
+}
+
+fn check_type(value: &Value, schema: &Value, path: &KeyPath) -> Result<(), Departure> {
+    if schema.get("enum").is_some() || schema.get("const").is_some() {
+        return check_words(value, &[schema], path);
+    }
+    let types: Vec<&str> = match schema.get("type") {
+        Some(Value::String(one)) => vec![one],
+        Some(Value::Array(several)) => several.iter().filter_map(Value::as_str).collect(),
+        _ => return Ok(()),
+    };
+    if !types.iter().any(|&name| is_of_type(value, name)) {
+        let expected = types.iter().filter(|&&name| name != "null").map(|&name| type_phrase(name));
+        let expected = expected.collect::<Vec<_>>().join(" or ");
+        return Err(depart(path, Fault::Type { expected, found: shown(value) }));
+    }
+    check_bounds(value, schema, path)
+}
+
+fn check_bounds(value: &Value, schema: &Value, path: &KeyPath) -> Result<(), Departure> {
+    let bound = |word: &str| schema.get(word).and_then(Value::as_f64);
+    let (low, high) = (bound("minimum"), bound("maximum"));
+    let Some(number) = value.as_f64() else { return Ok(()) };
+    if low.is_none_or(|low| number >= low) && high.is_none_or(|high| number <= high) {
+        return Ok(());
+    }
+    let text = |bound: Option<f64>| bound.map(|x| x.to_string()).unwrap_or_default();
+    let range = format!("{}..={}", text(low), text(high)).trim_end_matches('=').to_owned();
+    Err(depart(path, Fault::Range { found: shown(value), range }))
+}
+
+fn is_of_type(value: &Value, name: &str) -> bool {
+    match name {
+        "object" => value.is_object(),
+        "array" => value.is_array(),
+        "string" => value.is_string(),
+        "boolean" => value.is_boolean(),
+        "integer" => value.is_i64() || value.is_u64(),
+        "number" => value.is_number(),
+        "null" => value.is_null(),
+        _ => true,
+    }
+}
+
+fn type_phrase(name: &str) -> &str {
+    match name {
+        "object" => "a table",
+        "array" => "a list",
+        "string" => "a text",
+        "boolean" => "`true` or `false`",
+        "integer" => "a whole number",
+        "number" => "a number",
+        other => other,
+    }
+}
+
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Object(_) => "a table".into(),
+        Value::Array(_) => "a list".into(),
+        other => other.to_string(),
+    }
+}
+
+fn depart(path: &KeyPath, fault: Fault) -> Departure {
+    Departure { path: path.clone(), fault }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use regrasp_api::{Limits, ObjectDescription};
+    use serde_json::json;
+
+    fn schema_of<T: schemars::JsonSchema>() -> Value {
+        schemars::schema_for!(T).to_value()
+    }
+
+    fn refusal<T: schemars::JsonSchema>(value: Value) -> String {
+        check_schema(&value, &schema_of::<T>()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn good_data_pass() {
+        let ball = json!({"shape": {"kind": "sphere", "radius": 1}, "friction": 0.5});
+        assert_eq!(check_schema(&ball, &schema_of::<ObjectDescription>()), Ok(()));
+        let limits = json!({"budget": {"time_limit": 2.0}, "resolution": {"retreat": [0.1, 0.2]}});
+        assert_eq!(check_schema(&limits, &schema_of::<Limits>()), Ok(()));
+    }
+
+    #[test]
+    fn unknown_keys_are_placed_and_explained() {
+        let text = refusal::<Limits>(json!({"budget": {"max_node": 5}}));
+        assert_eq!(text, "`budget.max_node`: unknown key; did you mean `max_nodes`?");
+        let ball = json!({"shape": {"kind": "sphere", "radius": 1, "radios": 2}, "friction": 0.5});
+        assert!(
+            refusal::<ObjectDescription>(ball).contains("`shape.radios`: unknown key; did you mean `radius`")
+        );
+    }
+
+    #[test]
+    fn tags_types_and_missing_keys_are_explained() {
+        let kind = |kind: &str| json!({"shape": {"kind": kind, "radius": 1}, "friction": 0.5});
+        assert!(refusal::<ObjectDescription>(kind("shpere")).contains("did you mean `sphere`?"));
+        let text = refusal::<ObjectDescription>(json!({"shape": {"kind": "sphere", "radius": 1}}));
+        assert!(text.contains("`friction` is missing"), "{text}");
+        let text =
+            refusal::<ObjectDescription>(json!({"shape": {"kind": "sphere", "radius": "1"}, "friction": 1}));
+        assert_eq!(text, "`shape.radius`: \"1\" is not a number");
+        let text = refusal::<Limits>(json!({"resolution": {"retreat": [0.1]}}));
+        assert_eq!(text, "`resolution.retreat`: a list of 1 values is not a list of 2 values");
+        let text = refusal::<Limits>(json!({"budget": {"max_nodes": -1}}));
+        assert_eq!(text, "`budget.max_nodes`: -1 is outside 0..");
+        let text = refusal::<Limits>(json!({"budget": {"max_nodes": 1.5}}));
+        assert_eq!(text, "`budget.max_nodes`: 1.5 is not a whole number");
+    }
+
+    #[test]
+    fn defaults_fill_what_is_absent_and_keep_what_is_there() {
+        let mut settings = Map::from_iter([("smoothing".to_owned(), json!(2))]);
+        fill_defaults(&mut settings, &schema_of::<regrasp_api::Budget>());
+        assert_eq!(Value::Object(settings), json!({"max_nodes": 5000, "smoothing": 2}));
+    }
+}
