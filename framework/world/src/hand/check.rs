@@ -1,0 +1,189 @@
+//! Checks of a hand's description, each with the path of its key.
+
+use super::HandError;
+use regrasp_api::{
+    FingerDescription, HandDescription, JointDescription, JointKind, MAX_FINGER_JOINTS, MAX_FINGERS,
+    PlacedShape, Pose, PoseDescription, Shape, Vec3,
+};
+
+/// Radii that a fingertip may have (m).
+const RADIUS: (f64, f64) = (1e-4, 0.2);
+/// Largest absolute limit of a revolute joint (rad): two turns.
+const MAX_TURN: f64 = 4.0 * std::f64::consts::PI;
+/// Largest absolute limit of a prismatic joint (m).
+const MAX_TRAVEL: f64 = 10.0;
+/// Largest speed, acceleration and effort of a joint.
+const MAX_RATE: f64 = 1e9;
+const MILLIMETRES: &str = "; lengths are in metres";
+const DEGREES: &str = "; angles are in radians, lengths in metres";
+
+/// The poses of a finger whose description is sound.
+#[derive(Clone, Debug)]
+pub(super) struct FingerPoses {
+    /// The base in H.
+    pub X_HB: Pose,
+    /// Each joint's frame at position 0, in the frame of the link before.
+    pub origins: Vec<Pose>,
+}
+
+/// Checks every number and name; the poses of each finger.
+pub(super) fn check_hand(hand: &HandDescription) -> Result<Vec<FingerPoses>, HandError> {
+    check_name(&hand.name, "name")?;
+    check_range("fingertip_radius", hand.fingertip_radius, RADIUS, MILLIMETRES)?;
+    check_shapes("palm", &hand.palm)?;
+    check_count("finger", hand.finger.len(), 1, MAX_FINGERS)?;
+    let poses = hand
+        .finger
+        .iter()
+        .enumerate()
+        .map(|(index, finger)| check_finger(&format!("finger[{index}]"), finger))
+        .collect::<Result<_, _>>()?;
+    check_unique(hand)?;
+    Ok(poses)
+}
+
+fn check_finger(key: &str, finger: &FingerDescription) -> Result<FingerPoses, HandError> {
+    check_name(&finger.name, &format!("{key}.name"))?;
+    let X_HB = check_pose(format!("{key}.base"), &finger.base)?;
+    check_count(&format!("{key}.joint"), finger.joint.len(), 1, MAX_FINGER_JOINTS)?;
+    let origins = finger
+        .joint
+        .iter()
+        .enumerate()
+        .map(|(index, joint)| check_joint(&format!("{key}.joint[{index}]"), joint))
+        .collect::<Result<_, _>>()?;
+    if !finger.tip.iter().all(|x| x.is_finite()) {
+        return Err(HandError::NotFinite { key: format!("{key}.tip"), value: finger.tip });
+    }
+    check_rest(key, finger)?;
+    Ok(FingerPoses { X_HB, origins })
+}
+
+fn check_joint(key: &str, joint: &JointDescription) -> Result<Pose, HandError> {
+    check_name(&joint.name, &format!("{key}.name"))?;
+    let origin = check_pose(format!("{key}.origin"), &joint.origin)?;
+    let length = Vec3::from(joint.axis).norm();
+    if !(length.is_finite() && length > 1e-9) {
+        return Err(HandError::NoDirection { key: format!("{key}.axis"), value: joint.axis });
+    }
+    let most = match joint.kind {
+        JointKind::Revolute => MAX_TURN,
+        JointKind::Prismatic => MAX_TRAVEL,
+    };
+    check_range(&format!("{key}.lower"), joint.lower, (-most, most), DEGREES)?;
+    check_range(&format!("{key}.upper"), joint.upper, (-most, most), DEGREES)?;
+    if joint.lower >= joint.upper {
+        return Err(HandError::EmptyLimits { key: key.into(), lower: joint.lower, upper: joint.upper });
+    }
+    let rates =
+        [("velocity", joint.velocity), ("acceleration", joint.acceleration), ("effort", joint.effort)];
+    for (name, value) in rates {
+        check_positive(&format!("{key}.{name}"), value, MAX_RATE)?;
+    }
+    check_shapes(&format!("{key}.link"), &joint.link)?;
+    Ok(origin)
+}
+
+fn check_rest(key: &str, finger: &FingerDescription) -> Result<(), HandError> {
+    let (given, wanted) = (finger.rest.len(), finger.joint.len());
+    if given != wanted {
+        return Err(HandError::RestCount { key: format!("{key}.rest"), given, wanted });
+    }
+    for (index, (&q, joint)) in finger.rest.iter().zip(&finger.joint).enumerate() {
+        let hint = "; the rest posture must lie within the joint's limits";
+        check_range(&format!("{key}.rest[{index}]"), q, (joint.lower, joint.upper), hint)?;
+    }
+    Ok(())
+}
+
+/// Fingers' names must differ among each other, joints' names over the whole hand (exports need that).
+fn check_unique(hand: &HandDescription) -> Result<(), HandError> {
+    let fingers =
+        hand.finger.iter().enumerate().map(|(f, finger)| (&finger.name, format!("finger[{f}].name")));
+    let joints = hand.finger.iter().enumerate().flat_map(|(f, finger)| {
+        let key = move |j| format!("finger[{f}].joint[{j}].name");
+        finger.joint.iter().enumerate().map(move |(j, joint)| (&joint.name, key(j)))
+    });
+    first_duplicate(fingers.collect())?;
+    first_duplicate(joints.collect())
+}
+
+fn first_duplicate(names: Vec<(&String, String)>) -> Result<(), HandError> {
+    for (index, (name, key)) in names.iter().enumerate() {
+        if let Some((_, first)) = names[..index].iter().find(|(earlier, _)| earlier == name) {
+            let (key, first) = (key.clone(), first.clone());
+            return Err(HandError::DuplicateName { key, name: (*name).clone(), first });
+        }
+    }
+    Ok(())
+}
+
+fn check_shapes(key: &str, shapes: &[PlacedShape]) -> Result<(), HandError> {
+    for (index, placed) in shapes.iter().enumerate() {
+        let key = format!("{key}[{index}]");
+        check_pose(format!("{key}.pose"), &placed.pose)?;
+        check_shape(&format!("{key}.shape"), &placed.shape)?;
+    }
+    Ok(())
+}
+
+/// The numbers of a shape; a mesh is checked where it is read.
+fn check_shape(key: &str, shape: &Shape) -> Result<(), HandError> {
+    match shape {
+        Shape::Sphere { radius } => check_positive(&format!("{key}.radius"), *radius, MAX_TRAVEL),
+        Shape::Box { size } => size
+            .iter()
+            .enumerate()
+            .try_for_each(|(axis, &edge)| check_positive(&format!("{key}.size[{axis}]"), edge, MAX_TRAVEL)),
+        Shape::Capsule { from, to, radius } => {
+            for (name, end) in [("from", from), ("to", to)] {
+                if !end.iter().all(|x| x.is_finite()) {
+                    return Err(HandError::NotFinite { key: format!("{key}.{name}"), value: *end });
+                }
+            }
+            check_positive(&format!("{key}.radius"), *radius, MAX_TRAVEL)
+        }
+        Shape::HalfSpace { normal, offset } => {
+            let length = Vec3::from(*normal).norm();
+            if !(length.is_finite() && length > 1e-9) {
+                return Err(HandError::NoDirection { key: format!("{key}.normal"), value: *normal });
+            }
+            check_range(&format!("{key}.offset"), *offset, (-1e3, 1e3), MILLIMETRES)
+        }
+        Shape::Mesh(_) => Ok(()),
+    }
+}
+
+fn check_pose(key: String, pose: &PoseDescription) -> Result<Pose, HandError> {
+    pose.pose().map_err(|reason| HandError::Pose { key, reason })
+}
+
+fn check_name(name: &str, key: &str) -> Result<(), HandError> {
+    if name.trim().is_empty() {
+        return Err(HandError::EmptyName { key: key.into() });
+    }
+    Ok(())
+}
+
+fn check_count(key: &str, given: usize, least: usize, most: usize) -> Result<(), HandError> {
+    if (least..=most).contains(&given) {
+        return Ok(());
+    }
+    Err(HandError::Count { key: key.into(), given, range: format!("{least}..={most}") })
+}
+
+fn check_range(key: &str, value: f64, (low, high): (f64, f64), hint: &'static str) -> Result<(), HandError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(HandError::Range { key: key.into(), value, range: format!("{low}..={high}"), hint })
+}
+
+/// Refuses what is not in (0, most].
+fn check_positive(key: &str, value: f64, most: f64) -> Result<(), HandError> {
+    if value > 0.0 && value <= most {
+        return Ok(());
+    }
+    let hint = "; it must be positive";
+    Err(HandError::Range { key: key.into(), value, range: format!("(0, {most}]"), hint })
+}

@@ -1,0 +1,107 @@
+//! Why a hand's description is refused.
+
+use thiserror::Error;
+
+/// Why a hand's description is refused; each message names the key, the value, the allowed range and the likely fix.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum HandError {
+    /// A number outside its range, or not finite.
+    #[error("`{key}` = {value} is outside {range}{hint}")]
+    Range {
+        /// Path of the key, such as `finger[1].joint[2].lower`.
+        key: String,
+        /// The value given.
+        value: f64,
+        /// The allowed range, such as `0.0001..=0.2`.
+        range: String,
+        /// What is probably wrong, with its leading `; `, or nothing.
+        hint: &'static str,
+    },
+    /// A vector that must have a direction is zero or not finite.
+    #[error("`{key}` = {value:?} has no direction; give three finite numbers that are not all zero")]
+    NoDirection {
+        /// Path of the key, such as `finger[1].joint[2].axis`.
+        key: String,
+        /// The vector given.
+        value: [f64; 3],
+    },
+    /// A vector with a coordinate that is NaN or infinite.
+    #[error("`{key}` = {value:?} must be three finite numbers (m)")]
+    NotFinite {
+        /// Path of the key, such as `finger[1].tip`.
+        key: String,
+        /// The vector given.
+        value: [f64; 3],
+    },
+    /// A pose that cannot be read.
+    #[error("`{key}`: {reason}")]
+    Pose {
+        /// Path of the key, such as `finger[1].base`.
+        key: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// Lower limit not below the upper one.
+    #[error(
+        "`{key}.lower` = {lower} must be less than `{key}.upper` = {upper}; a joint that does not move belongs into the next `origin`"
+    )]
+    EmptyLimits {
+        /// Path of the joint, such as `finger[1].joint[2]`.
+        key: String,
+        /// The lower limit.
+        lower: f64,
+        /// The upper limit.
+        upper: f64,
+    },
+    /// The rest posture has the wrong number of joints.
+    #[error(
+        "`{key}` has {given} positions, but the finger has {wanted} joints; give one position for each joint"
+    )]
+    RestCount {
+        /// Path of the key, such as `finger[1].rest`.
+        key: String,
+        /// How many positions are given.
+        given: usize,
+        /// How many joints the finger has.
+        wanted: usize,
+    },
+    /// The hand has no finger, or too many; or a finger has too many joints.
+    #[error("`{key}` has {given} entries, allowed are {range}")]
+    Count {
+        /// Path of the list, such as `finger` or `finger[1].joint`.
+        key: String,
+        /// How many entries it has.
+        given: usize,
+        /// How many it may have, such as `1..=8`.
+        range: String,
+    },
+    /// A name is missing.
+    #[error("`{key}` is empty; give it a name")]
+    EmptyName {
+        /// Path of the key, such as `finger[1].name`.
+        key: String,
+    },
+    /// A name that was taken before.
+    #[error("`{key}` = \"{name}\" is the name of `{first}` too; names must differ")]
+    DuplicateName {
+        /// Path of the key, such as `finger[1].name`.
+        key: String,
+        /// The name.
+        name: String,
+        /// Path of the key that has the name already.
+        first: String,
+    },
+    /// A finger that cannot place its tip freely in space.
+    #[error(
+        "finger \"{finger}\" (`{key}`) has {independent} independent joints, at least three are needed: its tip must be able to move in all directions; add a joint or change an axis"
+    )]
+    TooFewIndependentJoints {
+        /// The finger's name.
+        finger: String,
+        /// Path of the finger, such as `finger[1]`.
+        key: String,
+        /// In how many independent directions its joints can move the tip.
+        independent: usize,
+    },
+}
