@@ -1,0 +1,77 @@
+//! Why a description of a hand, an object or a scene is refused.
+
+use regrasp_api::MeshError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why a description is refused: each message names the key or the file, the value and what is allowed.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum WorldError {
+    /// A value outside its range.
+    #[error("`{key}` = {value} is outside {range}")]
+    Range {
+        /// The path of the key, such as `object.shape.radius`.
+        key: String,
+        /// The value that was given.
+        value: String,
+        /// The allowed range, with its unit.
+        range: String,
+    },
+    /// A value that cannot be used; the text says why.
+    #[error("`{key}`: {reason}")]
+    Value {
+        /// The path of the key.
+        key: String,
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// A mesh file that cannot be read.
+    #[error("`{key}`: cannot read `{}`: {reason}", path.display())]
+    File {
+        /// The path of the key.
+        key: String,
+        /// The file, as it was looked for.
+        path: PathBuf,
+        /// Why, with the line where there is one.
+        reason: String,
+    },
+    /// A mesh file whose mesh cannot be used.
+    #[error("`{key}`: the mesh of `{}` is refused: {source}", path.display())]
+    FileMesh {
+        /// The path of the key.
+        key: String,
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with the mesh, and the fix.
+        source: MeshError,
+    },
+    /// A mesh given in place that cannot be used.
+    #[error("`{key}`: the mesh is refused: {source}")]
+    Mesh {
+        /// The path of the key.
+        key: String,
+        /// What is wrong with the mesh, and the fix.
+        source: MeshError,
+    },
+}
+
+impl WorldError {
+    /// A value outside its range.
+    pub(crate) fn range(key: impl Into<String>, value: impl ToString, range: impl Into<String>) -> Self {
+        Self::Range { key: key.into(), value: value.to_string(), range: range.into() }
+    }
+
+    /// A value that cannot be used.
+    pub(crate) fn value(key: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self::Value { key: key.into(), reason: reason.into() }
+    }
+}
+
+/// Refuses a number that is not finite or not in `low..=high`.
+pub(crate) fn check_range(key: &str, value: f64, low: f64, high: f64, unit: &str) -> Result<(), WorldError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(WorldError::range(key, value, format!("{low}..={high}{unit}")))
+}
