@@ -1,5 +1,26 @@
 //! The plan file: format, reading, writing, timing.
+//!
+//! A [`Motion`] is what the planner makes; [`assign_times`] times it; [`records`] turns it into the segments of a [`Plan`], which
+//! [`write`] puts into a file and [`read`] gets back, every number exactly as it was.
 
+mod certificate;
+mod claims;
+mod convert;
+mod error;
+mod file;
+mod format;
+mod json;
 mod motion;
+mod statistics;
+mod timing;
 
+pub use certificate::*;
+pub use claims::*;
+pub use convert::*;
+pub use error::*;
+pub use file::*;
+pub use format::*;
+pub use json::*;
 pub use motion::*;
+pub use statistics::*;
+pub use timing::*;

@@ -1,0 +1,87 @@
+//! What a plan claims of its contacts and grasps: the verifier holds it to that.
+
+use regrasp_api::{Cone, ObjectModel};
+use serde::{Deserialize, Serialize};
+
+/// What the plan claims.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Claims {
+    /// Which wrenches each contact transmits.
+    pub contact: ContactClaim,
+    /// What makes a grasp stable.
+    pub criterion: Criterion,
+    /// How contacts move in a transfer.
+    pub transfer_law: TransferLaw,
+    /// How closure margins are measured.
+    pub margin: MarginFrame,
+}
+
+/// Which wrenches every contact of the plan is claimed to transmit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactClaim {
+    /// Id of the contact model, such as `contact-model/pcwf`.
+    pub model: String,
+    /// The cone of each contact; absent where it is not elliptic, and then stability is not independently checked.
+    pub cone: Option<ConeClaim>,
+}
+
+/// An elliptic cone: |f_t|²/μ² + m²/γ² ≤ f_n².
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConeClaim {
+    /// Coefficient of friction that the plan relies on, no unit; at most the object's.
+    pub mu: f64,
+    /// Torsional friction radius (m); counted as 0 in transfers, in which contacts may spin.
+    pub gamma: f64,
+}
+
+impl ConeClaim {
+    /// The claim for contacts with this cone; `None` where it is not elliptic.
+    pub fn from_cone(cone: &Cone<'_>) -> Option<Self> {
+        match *cone {
+            Cone::Elliptic { mu, gamma } => Some(Self { mu, gamma }),
+            Cone::Polyhedral(_) => None,
+        }
+    }
+}
+
+/// What makes a grasp stable.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Criterion {
+    /// Force closure: the contacts resist every small wrench.
+    #[default]
+    Closure,
+}
+
+/// How contacts move in a transfer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum TransferLaw {
+    /// The fingertips roll on the object, without slip and free to spin.
+    #[default]
+    Rolling,
+}
+
+/// Where torques are taken about and what they are divided by, so that margins of different grasps compare.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MarginFrame {
+    /// The point that torques are taken about, in the object's frame (m).
+    pub center_O: [f64; 3],
+    /// What torques are divided by (m).
+    pub length: f64,
+}
+
+impl MarginFrame {
+    /// The frame that plans use: the object's centre of mass, and the largest distance of its surface from there.
+    pub fn of_object(object: &ObjectModel) -> Self {
+        let distance = |v: &regrasp_api::Vec3| (v - object.p_OCm).norm();
+        let length = object.mesh.vertices().iter().map(distance).fold(0.0, f64::max);
+        Self { center_O: object.p_OCm.into(), length }
+    }
+}

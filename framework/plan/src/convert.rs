@@ -1,0 +1,147 @@
+//! Between the planner's motion and the file's segments.
+
+use crate::{
+    ContactRecord, Motion, PoseRecord, Segment, SegmentKind, SegmentName, SegmentRecord, StateRecord,
+};
+use nalgebra::{Quaternion, Translation3};
+use regrasp_api::{
+    Configuration, Contact, FingerIndex, FingerJoints, Hand, MAX_FINGER_JOINTS, MAX_FINGERS, PerFinger, Pose,
+    Rotation, Vec3,
+};
+use thiserror::Error;
+
+/// The facet of contacts that come from a file: a plan does not say which plugin's coordinates it was made with.
+pub const UNKNOWN_FACET: u32 = u32::MAX;
+
+/// Why segments and motion cannot be turned into each other.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ConvertError {
+    /// The motion has no times yet.
+    #[error("segment {segment} has {states} states but {times} times; assign times first")]
+    NotTimed {
+        /// The segment.
+        segment: usize,
+        /// How many states it has.
+        states: usize,
+        /// How many times.
+        times: usize,
+    },
+    /// A state does not have the hand's form.
+    #[error("segment {segment}, state {state}: {reason}")]
+    Form {
+        /// The segment.
+        segment: usize,
+        /// The state.
+        state: usize,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A regrasp without its finger, or a transfer with one.
+    #[error("segment {segment}: a regrasp names the finger that moves, a transfer names none")]
+    Finger {
+        /// The segment.
+        segment: usize,
+    },
+}
+
+/// The file's segments of a timed motion.
+pub fn records(motion: &Motion, hand: &dyn Hand) -> Result<Vec<SegmentRecord>, ConvertError> {
+    let one = |(index, segment): (usize, &Segment)| {
+        let (states, times) = (segment.states.len(), segment.times.len());
+        if states != times {
+            return Err(ConvertError::NotTimed { segment: index, states, times });
+        }
+        let (kind, finger) = match segment.kind {
+            SegmentKind::Transfer => (SegmentName::Transfer, None),
+            SegmentKind::Regrasp(finger) => (SegmentName::Regrasp, Some(finger.0)),
+        };
+        let states = segment.states.iter().zip(&segment.times);
+        let states = states.map(|(q, &time)| state_record(q, time, hand)).collect();
+        Ok(SegmentRecord { kind, finger, states })
+    };
+    motion.segments.iter().enumerate().map(one).collect()
+}
+
+fn state_record(q: &Configuration, time: f64, hand: &dyn Hand) -> StateRecord {
+    let orientation = q.X_HO.rotation.quaternion();
+    let contact = |(finger, contact): (FingerIndex, &Option<Contact>)| {
+        contact.map(|contact| {
+            let R_HF = hand.tip_kinematics(finger, &q.joints[finger]).R_HF;
+            let inward_F = R_HF.inverse() * (q.X_HO.rotation * -contact.n_O);
+            ContactRecord {
+                point_O: contact.p_OC.into(),
+                normal_O: contact.n_O.into(),
+                point_F: (inward_F * hand.fingertip_radius()).into(),
+            }
+        })
+    };
+    StateRecord {
+        time,
+        object: PoseRecord {
+            position: q.X_HO.translation.vector.into(),
+            orientation: [orientation.w, orientation.i, orientation.j, orientation.k],
+        },
+        joints: q.joints.iter().map(|(_, joints)| joints.to_vec()).collect(),
+        contacts: q.contacts.iter().map(contact).collect(),
+    }
+}
+
+/// The motion that a file's segments describe, with its times. Contacts come back with [`UNKNOWN_FACET`].
+pub fn motion(segments: &[SegmentRecord]) -> Result<Motion, ConvertError> {
+    let one = |(index, record): (usize, &SegmentRecord)| {
+        let kind = match (record.kind, record.finger) {
+            (SegmentName::Transfer, None) => SegmentKind::Transfer,
+            (SegmentName::Regrasp, Some(finger)) => SegmentKind::Regrasp(FingerIndex(finger)),
+            _ => return Err(ConvertError::Finger { segment: index }),
+        };
+        let state = |(state, record): (usize, &StateRecord)| {
+            configuration(record).map_err(|reason| ConvertError::Form { segment: index, state, reason })
+        };
+        Ok(Segment {
+            kind,
+            states: record.states.iter().enumerate().map(state).collect::<Result<_, _>>()?,
+            times: record.states.iter().map(|state| state.time).collect(),
+        })
+    };
+    Ok(Motion { segments: segments.iter().enumerate().map(one).collect::<Result<_, _>>()? })
+}
+
+/// The configuration that a file's state describes; `Err` says what does not fit.
+pub fn configuration(state: &StateRecord) -> Result<Configuration, String> {
+    let count = state.joints.len();
+    if count == 0 || count > MAX_FINGERS || state.contacts.len() != count {
+        return Err(format!(
+            "joints of {count} fingers and contacts of {}; both must be 1 to {MAX_FINGERS} and the same",
+            state.contacts.len()
+        ));
+    }
+    if let Some(joints) = state.joints.iter().find(|joints| joints.len() > MAX_FINGER_JOINTS) {
+        return Err(format!("a finger with {} joints; at most {MAX_FINGER_JOINTS}", joints.len()));
+    }
+    let joints = |finger: FingerIndex| {
+        let values = &state.joints[finger.index()];
+        let mut joints = FingerJoints::zeros(values.len());
+        joints.copy_from_slice(values);
+        joints
+    };
+    let contact = |finger: FingerIndex| {
+        state.contacts[finger.index()].map(|contact| Contact {
+            facet: UNKNOWN_FACET,
+            p_OC: Vec3::from(contact.point_O),
+            n_O: Vec3::from(contact.normal_O),
+        })
+    };
+    Ok(Configuration {
+        X_HO: pose(&state.object),
+        joints: PerFinger::from_fn(count, joints),
+        contacts: PerFinger::from_fn(count, contact),
+    })
+}
+
+/// The pose with exactly the file's numbers: the quaternion is not normalised again.
+pub fn pose(record: &PoseRecord) -> Pose {
+    let [w, x, y, z] = record.orientation;
+    let rotation = Rotation::new_unchecked(Quaternion::new(w, x, y, z));
+    Pose::from_parts(Translation3::from(Vec3::from(record.position)), rotation)
+}

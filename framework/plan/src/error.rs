@@ -1,0 +1,106 @@
+//! What can go wrong with a plan file, and what to do about it.
+
+use std::{io, path::PathBuf};
+use thiserror::Error;
+
+/// A plan file cannot be read.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// There is no such file.
+    #[error("`{}` does not exist; `plan SCENARIO -o PLAN` makes a plan file", path.display())]
+    Missing {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file cannot be read.
+    #[error("`{}` cannot be read: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The text ends in the middle.
+    #[error(
+        "`{}` is truncated: it ends in line {line}, in the middle of the plan; copy it again or make it anew", path.display()
+    )]
+    Truncated {
+        /// The file.
+        path: PathBuf,
+        /// The last line, counted from 1.
+        line: usize,
+    },
+    /// Not JSON.
+    #[error("`{}` is not JSON: {message}; a plan file is made by `plan SCENARIO -o PLAN`", path.display())]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// What and where.
+        message: String,
+    },
+    /// JSON, but not a plan.
+    #[error(
+        "`{}` is not a plan file: `format` is {found}, not \"regrasp-plan\"; a plan file is made by `plan SCENARIO -o PLAN`",
+        path.display()
+    )]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What it says instead.
+        found: String,
+    },
+    /// A plan of another version.
+    #[error(
+        "`{}` is a plan of format version {found}, this program reads version {known}; use the program that made it, or plan again",
+        path.display()
+    )]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// The file's version.
+        found: String,
+        /// Ours.
+        known: u32,
+    },
+    /// A plan whose content does not have the format's form.
+    #[error("`{}` does not have the form of a plan: {message}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What and where.
+        message: String,
+    },
+}
+
+/// A plan file cannot be written. What was in its place before is untouched.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// A number of the plan is NaN or infinite, which the format cannot hold.
+    #[error("the plan is not written: {place} is not a finite number")]
+    NotFinite {
+        /// Which number.
+        place: String,
+    },
+    /// The disk is full.
+    #[error("`{}` is not written: no space is left there; free some or choose another place", path.display())]
+    DiskFull {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The folder does not exist.
+    #[error("`{}` is not written: the folder does not exist; create it first", path.display())]
+    NoFolder {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Anything else.
+    #[error("`{}` is not written: {source}", path.display())]
+    Failed {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
