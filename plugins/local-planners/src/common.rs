@@ -1,0 +1,115 @@
+//! What the three local planners share: refusals, the order of bisection, bounds of a finger's motion.
+
+use regrasp_api::{
+    CallError, Configuration, Context, FingerIndex, FingerJoints, Hand, JointKind, Reached, Reason,
+    Resolution, Slot,
+};
+
+/// The answer of a planner that goes nowhere: the refusal is counted, the end is where it began.
+pub(crate) fn refuse(slot: Slot, reason: Reason, from: &Configuration, context: &mut Context<'_>) -> Reached {
+    let stop = Some(context.reject(slot, reason));
+    Reached { end: from.clone(), fraction: 0.0, stop }
+}
+
+/// The error for a target that belongs to another slot.
+pub(crate) fn wrong_target(plugin: &str, slot: Slot) -> CallError {
+    let reason = format!("it connects targets of the slot `{}` only", slot.name());
+    CallError::Unsupported { plugin: plugin.into(), reason }
+}
+
+/// One index of a bisection, between two that came before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Halving {
+    /// The index to look at now.
+    pub middle: usize,
+    /// Its neighbours: 0, `count`, or indices that came before.
+    pub ends: (usize, usize),
+}
+
+impl Halving {
+    /// Where the middle lies between its neighbours, in (0, 1).
+    pub fn fraction(self) -> f64 {
+        (self.middle - self.ends.0) as f64 / (self.ends.1 - self.ends.0) as f64
+    }
+}
+
+/// The indices strictly between 0 and `count`, coarse to fine: a bad motion shows early.
+pub(crate) fn bisection(count: usize) -> impl Iterator<Item = Halving> {
+    let top = count.next_power_of_two().trailing_zeros();
+    (0..top).rev().flat_map(move |level| {
+        let half = 1_usize << level;
+        (half..count)
+            .step_by(2 * half)
+            .map(move |middle| Halving { middle, ends: (middle - half, (middle + half).min(count)) })
+    })
+}
+
+/// A bound (m) of how far any point of the finger travels while its joints move by `differences`.
+///
+/// No point is farther from a joint's axis than the finger is long.
+pub(crate) fn travel(hand: &dyn Hand, finger: FingerIndex, differences: impl Iterator<Item = f64>) -> f64 {
+    let model = hand.finger(finger);
+    let lever = model.reach + hand.fingertip_radius();
+    let weight = |kind| if kind == JointKind::Prismatic { 1.0 } else { lever };
+    model
+        .joints
+        .iter()
+        .zip(differences)
+        .map(|(joint, difference)| weight(joint.kind) * difference.abs())
+        .sum()
+}
+
+/// The same between two postures of the finger.
+pub(crate) fn travel_between(
+    hand: &dyn Hand,
+    finger: FingerIndex,
+    a: &FingerJoints,
+    b: &FingerJoints,
+) -> f64 {
+    travel(hand, finger, a.iter().zip(b.iter()).map(|(a, b)| a - b))
+}
+
+/// The most (m) that a finger's points may travel between two stored states.
+///
+/// The verifier looks ten times between them and wants more clearance than the bodies can move from one look to
+/// the next; two bodies that keep `clearance` and travel 8 `clearance` each leave it a fifth to spare.
+pub(crate) fn largest_travel(resolution: &Resolution) -> f64 {
+    (8.0 * resolution.clearance).max(resolution.transfer_step)
+}
+
+/// `near` with the spare joints of the finger a fraction `s` of the way from `a` to `b`, the others as in `near`.
+///
+/// Inverse kinematics keeps the spare joints that it is given, so a redundant finger arrives in the posture wished for.
+pub(crate) fn with_spare(
+    spare: &[usize],
+    near: &FingerJoints,
+    (a, b): (&FingerJoints, &FingerJoints),
+    s: f64,
+) -> FingerJoints {
+    let mut joints = *near;
+    for &j in spare {
+        joints[j] = a[j] + (b[j] - a[j]) * s;
+    }
+    joints
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bisection_meets_every_index_once_between_known_ones() {
+        for count in 0..70 {
+            let mut known: Vec<usize> = vec![0, count];
+            for halving in bisection(count) {
+                assert!(known.contains(&halving.ends.0) && known.contains(&halving.ends.1), "{halving:?}");
+                assert!(!known.contains(&halving.middle) && halving.middle < count);
+                assert!(0.0 < halving.fraction() && halving.fraction() < 1.0);
+                known.push(halving.middle);
+            }
+            known.sort_unstable();
+            known.dedup();
+            assert_eq!(known, (0..=count).collect::<Vec<_>>());
+        }
+    }
+}

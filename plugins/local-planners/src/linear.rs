@@ -1,0 +1,225 @@
+//! `local-planner/linear`: straight on in GS_n, the contacts sliding along geodesics.
+
+use crate::common::{Halving, bisection, refuse, with_spare, wrong_target};
+use regrasp_api::{
+    Build, CallError, Configuration, Context, Entry, FingerIndex, Hint, LocalPlanner, MAX_FINGERS, Path,
+    Reached, Reason, Settings, SettingsError, Slot, SurfacePath, Target, Task, angle_between, check_range,
+    check_settings, interpolate,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
+
+const ID: &str = "local-planner/linear";
+const SLOT: Slot = Slot::GraspPlanner;
+
+/// Settings of [`Linear`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct LinearSettings {
+    /// Largest change of a joint (rad; m where prismatic) from one state to the next: more is a jump to another branch of
+    /// the inverse kinematics. Range 0.01 to 3. Our choice: close to a stretched finger a step of 1.5 mm turns the joint by 0.3 rad.
+    pub joint_jump: f64,
+}
+
+impl Default for LinearSettings {
+    fn default() -> Self {
+        Self { joint_jump: 0.4 }
+    }
+}
+
+impl Settings for LinearSettings {
+    fn validate(&self) -> Result<(), SettingsError> {
+        check_range("joint_jump", self.joint_jump, 0.01, 3.0)
+    }
+}
+
+/// Joins two configurations of GS_n: the pose moves straight, every contact slides along its geodesic, inverse kinematics
+/// closes the chains, free fingers move their joints straight.
+///
+/// All or nothing. The states are checked coarse to fine, because a path that fails mostly fails in a stretch of many steps. What
+/// is stored cannot be executed (contacts slide, possibly across sharp edges); it is what decomposition aims at
+/// (Sahbani, Saut, Perdereau, SSD 2007, section IV.B; the reduction property is that of Alami, Siméon, Laumond, ISRR 1989).
+#[derive(Clone, Debug)]
+pub struct Linear {
+    settings: LinearSettings,
+}
+
+impl Linear {
+    /// A planner with these settings, or why they are refused.
+    pub fn new(settings: LinearSettings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        Ok(Self { settings })
+    }
+}
+
+/// Memory that a call uses and leaves to the next one on the same thread.
+#[derive(Default)]
+struct Scratch {
+    slides: [SurfacePath; MAX_FINGERS],
+    /// States in the order in which they were checked; 0 and 1 are the ends.
+    states: Vec<Configuration>,
+    /// Where in `states` each step of the path is.
+    places: Vec<usize>,
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+impl LocalPlanner for Linear {
+    fn connect(
+        &self,
+        task: &Task<'_>,
+        from: &Configuration,
+        to: &Target<'_>,
+        mut path: Option<&mut Path>,
+        context: &mut Context<'_>,
+    ) -> Result<Reached, CallError> {
+        let Target::Grasp(to) = to else { return Err(wrong_target(ID, SLOT)) };
+        if let Some(path) = path.as_deref_mut() {
+            path.restart(from);
+        }
+        let mut scratch = SCRATCH.take();
+        let obstacle = self.obstacle(task, from, to, &mut scratch, context)?;
+        if let (None, Some(path)) = (obstacle, path) {
+            path.states.extend(scratch.places[1..].iter().map(|&place| scratch.states[place].clone()));
+        }
+        SCRATCH.replace(scratch);
+        Ok(match obstacle {
+            Some(reason) => refuse(SLOT, reason, from, context),
+            None => Reached { end: (*to).clone(), fraction: 1.0, stop: None },
+        })
+    }
+}
+
+impl Linear {
+    /// What is in the way, if anything; otherwise `scratch` holds the path.
+    fn obstacle(
+        &self,
+        task: &Task<'_>,
+        from: &Configuration,
+        to: &Configuration,
+        scratch: &mut Scratch,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError> {
+        if from.holding() != to.holding() {
+            return Ok(Some(Reason::Closure));
+        }
+        let Some(count) = steps(task, from, to, &mut scratch.slides, context)? else {
+            return Ok(Some(Reason::Surface));
+        };
+        scratch.states.clear();
+        scratch.states.extend([from.clone(), to.clone()]);
+        scratch.places.clear();
+        scratch.places.resize(count + 1, 0);
+        scratch.places[count] = 1;
+        let mut hint = Hint::default();
+        for (checked, halving) in bisection(count).enumerate() {
+            if checked % 16 == 0 {
+                context.proceed()?;
+            }
+            let state = match between(task, scratch, halving, count) {
+                Ok(state) => state,
+                Err(reason) => return Ok(Some(reason)),
+            };
+            if let Some(reason) = fault(task, &state, &mut hint, context)? {
+                return Ok(Some(reason));
+            }
+            scratch.places[halving.middle] = scratch.states.len();
+            scratch.states.push(state);
+        }
+        Ok(self.jumps(scratch).then_some(Reason::Closure))
+    }
+
+    /// Whether some joint jumps between neighbouring states.
+    fn jumps(&self, scratch: &Scratch) -> bool {
+        scratch.places.windows(2).any(|pair| {
+            let (a, b) = (&scratch.states[pair[0]].joints, &scratch.states[pair[1]].joints);
+            a.iter().any(|(finger, joints)| joints.max_difference(&b[finger]) > self.settings.joint_jump)
+        })
+    }
+}
+
+/// Lays the geodesics and counts the steps, at least 1; `None` where a fingertip cannot follow the surface.
+fn steps(
+    task: &Task<'_>,
+    from: &Configuration,
+    to: &Configuration,
+    slides: &mut [SurfacePath; MAX_FINGERS],
+    context: &mut Context<'_>,
+) -> Result<Option<usize>, CallError> {
+    let resolution = task.resolution;
+    let distance = (to.X_HO.translation.vector - from.X_HO.translation.vector).norm();
+    let angle = angle_between(&from.X_HO.rotation, &to.X_HO.rotation);
+    let mut steps = (distance / resolution.grasp_step).max(angle / resolution.grasp_turn);
+    for (finger, contact) in from.contacts.iter() {
+        if let (Some(a), Some(b)) = (contact, &to.contacts[finger]) {
+            let slide = &mut slides[finger.index()];
+            if !task.surface.geodesic(a, b, slide, context)? {
+                return Ok(None);
+            }
+            steps = steps.max(slide.lift_length() / resolution.grasp_step);
+        }
+    }
+    Ok(Some((steps.ceil() as usize).max(1)))
+}
+
+/// The closed configuration at one step, with the joints near those of its neighbours.
+fn between(
+    task: &Task<'_>,
+    scratch: &Scratch,
+    halving: Halving,
+    count: usize,
+) -> Result<Configuration, Reason> {
+    let (from, to) = (&scratch.states[0], &scratch.states[1]);
+    let [low, high] = [halving.ends.0, halving.ends.1].map(|end| &scratch.states[scratch.places[end]]);
+    let s = halving.middle as f64 / count as f64;
+    let mut q = from.clone();
+    q.X_HO = interpolate(&from.X_HO, &to.X_HO, s);
+    for i in 0..q.joints.len() {
+        let finger = FingerIndex(i as u8);
+        let ends = (&from.joints[finger], &to.joints[finger]);
+        if q.contacts[finger].is_none() {
+            q.joints[finger] = ends.0.interpolate(ends.1, s);
+            continue;
+        }
+        let contact = scratch.slides[i].at(s);
+        let p_HF =
+            q.X_HO.rotation * contact.tip_center(task.hand.fingertip_radius()) + q.X_HO.translation.vector;
+        let near = low.joints[finger].interpolate(&high.joints[finger], halving.fraction());
+        let near = with_spare(&task.hand.finger(finger).spare, &near, ends, s);
+        q.joints[finger] = task.hand.inverse(finger, &p_HF, &near).ok_or(Reason::Reach)?;
+        q.contacts[finger] = Some(contact);
+    }
+    Ok(q)
+}
+
+/// What is wrong with a closed configuration: stability first, because it costs less than collision.
+fn fault(
+    task: &Task<'_>,
+    q: &Configuration,
+    hint: &mut Hint,
+    context: &mut Context<'_>,
+) -> Result<Option<Reason>, CallError> {
+    let holding = q.holding();
+    if !task.stability.test(&task.grasp(q, holding), hint, context)?.is_stable() {
+        return Ok(Some(Reason::Stability));
+    }
+    let all = q.joints.fingers().collect();
+    Ok(task.clearance.configuration_free(q, all, true).is_err().then_some(Reason::Collision))
+}
+
+regrasp_api::inventory::submit! {
+    Entry {
+        id: ID,
+        slots: &[SLOT],
+        summary: "pose and free joints move straight, contacts slide along geodesics, inverse kinematics closes the chains",
+        references: &[
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007",
+        ],
+        schema: LinearSettings::schema,
+        check: check_settings::<LinearSettings>,
+        build: Build::LocalPlanner(|json, _| Ok(Box::new(Linear::new(LinearSettings::from_json(json)?)?))),
+    }
+}

@@ -1,0 +1,221 @@
+//! `local-planner/rolling`: the object moves straight, the fingertips roll on it without slip.
+
+mod constraint;
+mod motion;
+mod step;
+
+use crate::common::{largest_travel, wrong_target};
+use motion::Motion;
+use regrasp_api::{
+    Build, CallError, Configuration, Context, Entry, FingerJoints, Hint, LocalPlanner, Path, PerFinger, Pose,
+    Reached, Reason, Settings, SettingsError, Slot, Target, Task, Vec3, check_count, check_range,
+    check_settings,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use step::{Failure, Roller, State};
+
+const ID: &str = "local-planner/rolling";
+const SLOT: Slot = Slot::TransferPlanner;
+
+/// Settings of [`Rolling`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RollingSettings {
+    /// What part of the task's tolerances for closure and slip the motion may use, in 0.01 to 1. Default: half, as the plan's
+    /// meaning asks.
+    pub tolerance_share: f64,
+    /// How often a step may be halved before the contact counts as lost, 0 to 20. Our choice.
+    pub halvings: usize,
+}
+
+impl Default for RollingSettings {
+    fn default() -> Self {
+        Self { tolerance_share: 0.5, halvings: 8 }
+    }
+}
+
+impl Settings for RollingSettings {
+    fn validate(&self) -> Result<(), SettingsError> {
+        check_range("tolerance_share", self.tolerance_share, 0.01, 1.0)?;
+        check_count("halvings", self.halvings, 0, 20)
+    }
+}
+
+/// Moves the object straight to a pose while every holding fingertip rolls on it without slip; free fingers stay.
+///
+/// At every instant the material points of fingertip and object at each contact have the same velocity (Cole, Hauser, Sastry,
+/// "Kinematics and control of multifingered hands with rolling contact", IEEE T-AC 1989; Montana, "The kinematics of contact and
+/// grasp", IJRR 1988). This is solved for the joint speeds of each finger and integrated numerically, as the paper does (Sahbani,
+/// Saut, Perdereau, SSD 2007, section IV.C), by the midpoint rule. Departures from it: the normal is the direction from the closest point to
+/// the fingertip's centre, which needs no parameterisation of the object and is exact on its facets; after each step the centre is moved along that
+/// normal onto the offset surface, so that closure does not drift; steps are halved until the interpolated motion keeps its
+/// share of the tolerances.
+///
+/// Stops at the last valid state: at a joint's limit, out of reach or at a singularity (`reach`), at a collision, where the grasp is no
+/// longer stable, where net slip uses up its share, and where a contact is lost or jumps on a concave edge (`closure`).
+#[derive(Clone, Debug)]
+pub struct Rolling {
+    settings: RollingSettings,
+}
+
+impl Rolling {
+    /// A planner with these settings, or why they are refused.
+    pub fn new(settings: RollingSettings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        Ok(Self { settings })
+    }
+
+    fn roller<'a>(&self, task: &'a Task<'a>, from: &Configuration, to: &Pose) -> Roller<'a> {
+        Roller {
+            task,
+            motion: Motion::new(&from.X_HO, to),
+            holding: from.holding(),
+            radius: task.hand.fingertip_radius(),
+            closure: self.settings.tolerance_share * task.tolerances.closure,
+            slip: self.settings.tolerance_share * task.tolerances.slip,
+        }
+    }
+}
+
+impl LocalPlanner for Rolling {
+    fn connect(
+        &self,
+        task: &Task<'_>,
+        from: &Configuration,
+        to: &Target<'_>,
+        mut path: Option<&mut Path>,
+        context: &mut Context<'_>,
+    ) -> Result<Reached, CallError> {
+        let Target::Transfer(to) = to else { return Err(wrong_target(ID, SLOT)) };
+        if let Some(path) = path.as_deref_mut() {
+            path.restart(from);
+        }
+        let roller = self.roller(task, from, to);
+        let mut state =
+            State { q: from.clone(), s: 0.0, slip_O: PerFinger::filled(from.joints.len(), Vec3::zeros()) };
+        if roller.motion.is_still() {
+            state.s = 1.0;
+        }
+        let mut pace = Pace::new(roller.motion.step(task.resolution), self.settings.halvings);
+        let (mut hint, mut stop) = (Hint::default(), None);
+        while state.s < 1.0 && stop.is_none() {
+            context.proceed()?;
+            match next(&roller, &state, &mut pace, &mut hint, context)? {
+                Ok(next) => {
+                    state = next;
+                    if let Some(path) = path.as_deref_mut() {
+                        path.states.push(state.q.clone());
+                    }
+                }
+                Err(reason) => stop = Some(context.reject(SLOT, reason)),
+            }
+        }
+        Ok(Reached { end: state.q, fraction: state.s, stop })
+    }
+}
+
+/// The next valid state, or why there is none.
+fn next(
+    roller: &Roller<'_>,
+    state: &State,
+    pace: &mut Pace,
+    hint: &mut Hint,
+    context: &mut Context<'_>,
+) -> Result<Result<State, Reason>, CallError> {
+    let resolution = roller.task.resolution;
+    let rates = roller.rates(state, resolution.transfer_step, largest_travel(resolution));
+    let next = match rates {
+        Ok((rates, part)) => step(roller, state, &rates, part, pace),
+        Err(reason) => Err(reason),
+    };
+    let next = match next {
+        Ok(next) => next,
+        Err(reason) => return Ok(Err(reason)),
+    };
+    Ok(match fault(roller, &next.q, hint, context)? {
+        Some(reason) => Err(reason),
+        None => Ok(next),
+    })
+}
+
+/// Steps as far as the pace, `part` and what remains allow, halving until the contacts stay closed in between.
+fn step(
+    roller: &Roller<'_>,
+    state: &State,
+    rates: &PerFinger<FingerJoints>,
+    part: f64,
+    pace: &mut Pace,
+) -> Result<State, Reason> {
+    if part < pace.finest {
+        // So close to a singularity that a joint races.
+        return Err(Reason::Reach);
+    }
+    let mut h = pace.next(part, 1.0 - state.s);
+    while h >= 0.5 * pace.finest {
+        match roller.advance(state, rates, h) {
+            Ok(next) => return Ok(next),
+            Err(Failure::Finer) => h = pace.halve(h),
+            Err(Failure::Stop(reason)) => return Err(reason),
+        }
+    }
+    Err(Reason::Closure)
+}
+
+/// What is wrong with a state: stability first, because it costs less than collision.
+fn fault(
+    roller: &Roller<'_>,
+    q: &Configuration,
+    hint: &mut Hint,
+    context: &mut Context<'_>,
+) -> Result<Option<Reason>, CallError> {
+    let Roller { task, holding, .. } = roller;
+    if !task.stability.test(&task.grasp(q, *holding), hint, context)?.is_stable() {
+        return Ok(Some(Reason::Stability));
+    }
+    let free = task.clearance.configuration_free(q, *holding, true);
+    Ok(free.is_err().then_some(Reason::Collision))
+}
+
+/// How long steps are: halved where the contacts bend, doubled again behind.
+struct Pace {
+    full: f64,
+    finest: f64,
+    now: f64,
+}
+
+impl Pace {
+    fn new(full: f64, halvings: usize) -> Self {
+        Self { full, finest: full * 0.5_f64.powi(halvings as i32), now: full }
+    }
+
+    /// The next step's length, at most `part`; what remains is divided evenly, so that no splinter is left over.
+    fn next(&mut self, part: f64, remains: f64) -> f64 {
+        let longest = self.now.max(self.finest).min(part);
+        self.now = (2.0 * self.now).min(self.full);
+        remains / (remains / longest - 1e-9).ceil().max(1.0)
+    }
+
+    /// Half of `h`, to be kept to for the next step too.
+    fn halve(&mut self, h: f64) -> f64 {
+        self.now = 0.5 * h;
+        self.now
+    }
+}
+
+regrasp_api::inventory::submit! {
+    Entry {
+        id: ID,
+        slots: &[SLOT],
+        summary: "the object moves straight, fingertips roll without slip (midpoint rule on the velocity constraint)",
+        references: &[
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007",
+            "A. Cole, J. Hauser, S. Sastry, Kinematics and control of multifingered hands with rolling contact, IEEE T-AC 1989",
+            "D. J. Montana, The kinematics of contact and grasp, IJRR 1988",
+            "B. Kiss, J. Lévine, B. Lantos, On motion planning for robotic manipulation with permanent rolling contacts, IJRR 2002",
+        ],
+        schema: RollingSettings::schema,
+        check: check_settings::<RollingSettings>,
+        build: Build::LocalPlanner(|json, _| Ok(Box::new(Rolling::new(RollingSettings::from_json(json)?)?))),
+    }
+}

@@ -1,0 +1,110 @@
+//! One finger that moves through free space while everything else rests.
+
+use crate::common::{bisection, largest_travel, travel_between};
+use regrasp_api::{Configuration, Contact, FingerIndex, FingerJoints, Reason, Task, TipRule, Vec3};
+
+/// What stays the same during one regrasp.
+pub(crate) struct Flight<'a> {
+    pub task: &'a Task<'a>,
+    pub from: &'a Configuration,
+    pub finger: FingerIndex,
+    /// Fingertip radius (m).
+    pub radius: f64,
+}
+
+impl<'a> Flight<'a> {
+    pub fn new(task: &'a Task<'a>, from: &'a Configuration, finger: FingerIndex) -> Self {
+        Self { task, from, finger, radius: task.hand.fingertip_radius() }
+    }
+
+    /// The fingertip's centre (m, in H) at a height (m) above a contact.
+    pub fn center(&self, contact: &Contact, height: f64) -> Vec3 {
+        let X_HO = &self.from.X_HO;
+        X_HO.rotation * contact.tip_center(self.radius + height) + X_HO.translation.vector
+    }
+
+    /// The distance (m) of the fingertip from the object's surface.
+    pub fn gap(&self, joints: &FingerJoints) -> f64 {
+        let X_HO = &self.from.X_HO;
+        let p_HF = self.task.hand.tip_center(self.finger, joints);
+        let p_OF = X_HO.rotation.inverse_transform_vector(&(p_HF - X_HO.translation.vector));
+        self.task.surface.project(&p_OF, None).distance - self.radius
+    }
+
+    /// Whether the finger keeps clear of everything.
+    pub fn free(&self, joints: &FingerJoints, tip: TipRule) -> bool {
+        let (clearance, finger) = (self.task.clearance, self.finger);
+        clearance.finger_free(finger, joints, &self.from.X_HO, tip).is_ok()
+            && self
+                .from
+                .joints
+                .iter()
+                .filter(|&(other, _)| other != finger)
+                .all(|other| clearance.fingers_free((finger, joints), (other.0, other.1)).is_ok())
+    }
+
+    /// The same away from the object, fingertip included.
+    pub fn free_in_air(&self, joints: &FingerJoints) -> bool {
+        self.free(joints, TipRule::Clear(self.task.resolution.clearance))
+    }
+
+    /// A bound (m) of how far the finger's points travel between two postures.
+    pub fn travel(&self, a: &FingerJoints, b: &FingerJoints) -> f64 {
+        travel_between(self.task.hand, self.finger, a, b)
+    }
+
+    /// Whether the straight motion of the joints between two free postures is free, looked at every `step` (m) of travel.
+    pub fn free_between(&self, a: &FingerJoints, b: &FingerJoints, step: f64) -> bool {
+        let count = self.count(a, b, step);
+        bisection(count)
+            .all(|halving| self.free_in_air(&a.interpolate(b, halving.middle as f64 / count as f64)))
+    }
+
+    fn count(&self, a: &FingerJoints, b: &FingerJoints, step: f64) -> usize {
+        (self.travel(a, b) / step).ceil() as usize
+    }
+
+    /// Appends the straight motion of the joints from `a`, without it, to `b`; or says what bars it.
+    pub fn straight(
+        &self,
+        a: &FingerJoints,
+        b: &FingerJoints,
+        postures: &mut Vec<FingerJoints>,
+    ) -> Result<(), Reason> {
+        let step = self.task.resolution.regrasp_step;
+        if !self.free_between(a, b, step) {
+            return Err(Reason::Collision);
+        }
+        let count = self.count(a, b, step);
+        postures.extend((1..count).map(|i| a.interpolate(b, i as f64 / count as f64)));
+        if count > 0 {
+            postures.push(*b);
+        }
+        Ok(())
+    }
+
+    /// Puts straight motions where the finger travels too far from one posture to the next, from `first` on.
+    pub fn bridge(
+        &self,
+        start: &FingerJoints,
+        first: usize,
+        postures: &mut Vec<FingerJoints>,
+    ) -> Result<(), Reason> {
+        let bound = largest_travel(self.task.resolution);
+        let mut next = first;
+        let mut a = *start;
+        while let Some(&b) = postures.get(next) {
+            if self.travel(&a, &b) > bound {
+                let mut between = Vec::new();
+                self.straight(&a, &b, &mut between)?;
+                between.pop();
+                let count = between.len();
+                postures.splice(next..next, between);
+                next += count;
+            }
+            a = b;
+            next += 1;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,239 @@
+//! `local-planner/rrt`: one finger moves to a new contact, everything else rests.
+
+mod flight;
+mod follow;
+mod lift;
+mod tree;
+
+use crate::common::{refuse, wrong_target};
+use flight::Flight;
+use regrasp_api::{
+    Build, CallError, Configuration, Contact, Context, Entry, FingerIndex, FingerJoints, Hint, LocalPlanner,
+    Path, Reached, Reason, Settings, SettingsError, Slot, SurfacePath, Target, Task, TipRule, check_count,
+    check_range, check_settings,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
+
+const ID: &str = "local-planner/rrt";
+const SLOT: Slot = Slot::RegraspPlanner;
+
+/// Settings of [`Rrt`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RrtSettings {
+    /// Most nodes of the two random trees together, 0 (no search) to 100,000. Our choice: enough to pass an obstacle, little enough
+    /// that a hopeless search does not hold the planner up.
+    pub nodes: usize,
+    /// Longest edge of a tree, as a bound of the finger's travel (m), 1e-3 to 0.5. Our choice.
+    pub extend: f64,
+    /// Tries to shorten the path that the trees find, 0 to 10,000. Our choice.
+    pub shortcuts: usize,
+}
+
+impl Default for RrtSettings {
+    fn default() -> Self {
+        Self { nodes: 60, extend: 0.03, shortcuts: 12 }
+    }
+}
+
+impl Settings for RrtSettings {
+    fn validate(&self) -> Result<(), SettingsError> {
+        check_count("nodes", self.nodes, 0, 100_000)?;
+        check_range("extend", self.extend, 1e-3, 0.5)?;
+        check_count("shortcuts", self.shortcuts, 0, 10_000)
+    }
+}
+
+/// Moves one finger to a new contact or a free posture, the object resting in the grasp of the others.
+///
+/// Lifts the fingertip along the contact's normal, follows the geodesic between the two contacts at that height, touches down along the
+/// new normal. Where the way at that height is barred, and between free postures, two random trees in the finger's joint space
+/// search another (Kuffner & LaValle, "RRT-Connect: an efficient approach to single-query path planning", ICRA 2000, after LaValle & Kuffner,
+/// "Randomized kinodynamic planning", IJRR 2001, which the paper names).
+///
+/// All or nothing. Refused for `stability` where the other fingers do not hold the object, `retreat` where the finger can
+/// lift off at neither height of the task, otherwise for what bars the geodesic.
+#[derive(Clone, Debug)]
+pub struct Rrt {
+    settings: RrtSettings,
+}
+
+/// Memory that a call uses and leaves to the next one on the same thread.
+#[derive(Default)]
+struct Scratch {
+    slide: SurfacePath,
+    /// How far (m) the lifted fingertip has travelled at each of the slide's waypoints.
+    lengths: Vec<f64>,
+    /// The finger's postures after the start, in turn.
+    postures: Vec<FingerJoints>,
+    /// The finger's postures from the target's contact up.
+    descent: Vec<FingerJoints>,
+    trees: tree::Trees,
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+/// One end of the motion: a posture, and the contact if the finger touches there.
+#[derive(Clone, Copy)]
+struct End<'a> {
+    joints: &'a FingerJoints,
+    contact: Option<&'a Contact>,
+}
+
+impl Rrt {
+    /// A planner with these settings, or why they are refused.
+    pub fn new(settings: RrtSettings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        Ok(Self { settings })
+    }
+
+    /// Fills `scratch.postures` with the finger's motion, without its start; or says what bars it.
+    fn fly(
+        &self,
+        flight: &Flight<'_>,
+        ends: (End<'_>, End<'_>),
+        scratch: &mut Scratch,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError> {
+        scratch.postures.clear();
+        scratch.descent.clear();
+        let Some(low) = leave(flight, ends.0, &mut scratch.postures) else {
+            return Ok(Some(Reason::Retreat));
+        };
+        let Some(high) = leave(flight, ends.1, &mut scratch.descent) else {
+            return Ok(Some(Reason::Retreat));
+        };
+        let (a, b) = (
+            *scratch.postures.last().unwrap_or(ends.0.joints),
+            *scratch.descent.last().unwrap_or(ends.1.joints),
+        );
+        let lifted = scratch.postures.len();
+        let direct = match (ends.0.contact, ends.1.contact) {
+            (Some(from), Some(to)) => {
+                let Scratch { slide, lengths, postures, .. } = scratch;
+                match flight.task.surface.geodesic(from, to, slide, context)? {
+                    true => flight.follow(slide, lengths, (low, high), (&a, &b), postures),
+                    false => Err(Reason::Surface),
+                }
+            }
+            _ => flight.straight(&a, &b, &mut scratch.postures),
+        };
+        if let Err(reason) = direct {
+            scratch.postures.truncate(lifted);
+            if !tree::search(flight, &self.settings, (&a, &b), scratch, context)? {
+                return Ok(Some(reason));
+            }
+        }
+        // The way down is the way up backwards, and ends at the target's posture exactly.
+        let Scratch { postures, descent, .. } = scratch;
+        postures.extend(descent.iter().rev().skip(1));
+        if !descent.is_empty() {
+            postures.push(*ends.1.joints);
+        }
+        Ok(None)
+    }
+}
+
+/// Lifts the finger off the object where it touches: the greatest height of the task's that it reaches, 0 where it is free.
+fn leave(flight: &Flight<'_>, end: End<'_>, postures: &mut Vec<FingerJoints>) -> Option<f64> {
+    let Some(contact) = end.contact else { return Some(0.0) };
+    let resolution = flight.task.resolution;
+    let heights = [resolution.lift, resolution.retreat[0].min(resolution.retreat[1]).min(resolution.lift)];
+    heights.into_iter().find(|&height| flight.lift(contact, end.joints, height, postures))
+}
+
+impl LocalPlanner for Rrt {
+    fn connect(
+        &self,
+        task: &Task<'_>,
+        from: &Configuration,
+        to: &Target<'_>,
+        mut path: Option<&mut Path>,
+        context: &mut Context<'_>,
+    ) -> Result<Reached, CallError> {
+        let &Target::Regrasp { finger, contact, joints } = to else { return Err(wrong_target(ID, SLOT)) };
+        if let Some(path) = path.as_deref_mut() {
+            path.restart(from);
+        }
+        let start = End { joints: &from.joints[finger], contact: from.contacts[finger].as_ref() };
+        let target = End { joints, contact };
+        let flight = Flight::new(task, from, finger);
+        if let Some(reason) = unfit(&flight, target, context)? {
+            return Ok(refuse(SLOT, reason, from, context));
+        }
+        let mut scratch = SCRATCH.take();
+        let barred = self.fly(&flight, (start, target), &mut scratch, context)?;
+        if let Some(reason) = barred {
+            SCRATCH.replace(scratch);
+            return Ok(refuse(SLOT, reason, from, context));
+        }
+        let mut end = from.clone();
+        end.joints[finger] = *joints;
+        end.contacts[finger] = contact.copied();
+        if let Some(path) = path {
+            store(path, &end, finger, &scratch.postures);
+        }
+        SCRATCH.replace(scratch);
+        Ok(Reached { end, fraction: 1.0, stop: None })
+    }
+}
+
+/// Why the motion cannot even begin or end, if so: the others do not hold the object, or the target is no place for the finger.
+fn unfit(
+    flight: &Flight<'_>,
+    target: End<'_>,
+    context: &mut Context<'_>,
+) -> Result<Option<Reason>, CallError> {
+    let Flight { task, from, finger, .. } = flight;
+    let others = from.holding().without(*finger);
+    // The grasp of the others does not change: one test holds for the whole motion.
+    let grasp = task.grasp(from, others);
+    if others.is_empty() || !task.stability.test(&grasp, &mut Hint::default(), context)?.is_stable() {
+        return Ok(Some(Reason::Stability));
+    }
+    if !task.hand.within_limits(*finger, target.joints) {
+        return Ok(Some(Reason::Limits));
+    }
+    let mut rule = TipRule::Clear(task.resolution.clearance);
+    if let Some(contact) = target.contact {
+        rule = TipRule::Touches;
+        let gap = task.hand.tip_center(*finger, target.joints) - flight.center(contact, 0.0);
+        if gap.norm() > 0.5 * task.tolerances.closure {
+            return Ok(Some(Reason::Closure));
+        }
+    }
+    Ok((!flight.free(target.joints, rule)).then_some(Reason::Collision))
+}
+
+/// Appends the motion to the path; the finger touches nothing before `end`, to which the last posture belongs.
+fn store(path: &mut Path, end: &Configuration, finger: FingerIndex, postures: &[FingerJoints]) {
+    let mut moving = end.clone();
+    moving.contacts[finger] = None;
+    for posture in &postures[..postures.len().saturating_sub(1)] {
+        moving.joints[finger] = *posture;
+        path.states.push(moving.clone());
+    }
+    if path.states.last() != Some(end) {
+        path.states.push(end.clone());
+    }
+}
+
+regrasp_api::inventory::submit! {
+    Entry {
+        id: ID,
+        slots: &[SLOT],
+        summary: "lifts the finger, follows the geodesic, touches down; random trees search a way around obstacles",
+        references: &[
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007",
+            "S. M. LaValle, J. J. Kuffner, Randomized kinodynamic planning, IJRR 2001",
+            "J. J. Kuffner, S. M. LaValle, RRT-Connect: an efficient approach to single-query path planning, ICRA 2000",
+        ],
+        schema: RrtSettings::schema,
+        check: check_settings::<RrtSettings>,
+        build: Build::LocalPlanner(|json, _| Ok(Box::new(Rrt::new(RrtSettings::from_json(json)?)?))),
+    }
+}
