@@ -1,1 +1,28 @@
-//! Under construction.
+//! The planner: manipulation graph, Algorithms 1 to 3, query, decomposition, smoothing, parallel solving.
+//!
+//! Implements A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007,
+//! over the six roles of `regrasp-api`; it names no plugin. Data flows one way: [`solve`] finds grasps at start and goals
+//! (`endpoints`), runs one search a goal (`search`, on `graph`), whose query (`query`) is decomposed (`decompose`, `steps`),
+//! smooths the whole (`smooth`) and times it. The one way back: an edge that cannot be decomposed leaves the graph.
+//!
+//! The result is that of the sequential algorithm for any number of threads: every expensive call is a pure function of its
+//! key, threads only compute results ahead, and these are consumed in order (`session`).
+
+mod admissible;
+mod decompose;
+mod endpoints;
+mod error;
+mod graph;
+mod query;
+mod report;
+mod search;
+mod session;
+mod smooth;
+mod solve;
+mod steps;
+
+pub use admissible::Leavable;
+pub use error::{End, PlanError};
+pub use report::{Clock, Outcome, Progress, Silent, Status, Stuck};
+pub use session::Drivers;
+pub use solve::{Request, solve};

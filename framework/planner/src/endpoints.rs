@@ -1,0 +1,153 @@
+//! Start and goals: grasps that are given are checked, grasps that are not given are found.
+
+use crate::error::{End, PlanError, explain};
+use crate::session::{Call, Session};
+use regrasp_api::{
+    CallError, Configuration, Contact, Context, FingerGrasp, FingerIndex, FingerJoints, FingerSet,
+    GraspContact, PerFinger, Pose, PoseRequest, Tally, Task,
+};
+
+/// How far a given contact point may lie from the surface (m).
+const CONTACT_TOLERANCE: f64 = 1e-3;
+/// How far the fingertip of given joints may lie from its contact (m).
+const JOINT_TOLERANCE: f64 = 1e-3;
+/// How many calls of the sampler look for a grasp at a given pose before the search gives up.
+const GRASP_CALLS: u64 = 40;
+
+/// The configuration of a grasp that the problem gives, checked: reach, limits, collision, stability.
+pub(crate) fn given(
+    task: &Task<'_>,
+    end: End,
+    X_HO: Pose,
+    grasp: &[FingerGrasp],
+    context: &mut Context<'_>,
+) -> Result<Configuration, PlanError> {
+    let count = task.hand.finger_count();
+    if grasp.len() != count {
+        let reason = format!(
+            "{} entries for a hand of {count} fingers; give one for each, {{}} for a free one",
+            grasp.len()
+        );
+        return Err(PlanError::Grasp { end, reason });
+    }
+    let mut q = Configuration {
+        X_HO,
+        joints: PerFinger::from_fn(count, |finger| task.hand.finger(finger).rest),
+        contacts: PerFinger::filled(count, None),
+    };
+    for finger in q.joints.fingers() {
+        let fault =
+            |reason| PlanError::Finger { end, finger, name: task.hand.finger(finger).name.clone(), reason };
+        place(task, &mut q, finger, &grasp[finger.index()]).map_err(fault)?;
+    }
+    let all = FingerSet::first(count);
+    task.clearance.configuration_free(&q, all, true).map_err(|pair| PlanError::Collision { end, pair })?;
+    if !stable(task, &q, context)? {
+        return Err(PlanError::Unstable { end, friction: task.object.friction });
+    }
+    Ok(q)
+}
+
+/// Places one finger as its entry says; the error says what is wrong with it.
+fn place(
+    task: &Task<'_>,
+    q: &mut Configuration,
+    finger: FingerIndex,
+    entry: &FingerGrasp,
+) -> Result<(), String> {
+    let model = task.hand.finger(finger);
+    if let Some(joints) = &entry.joints {
+        if joints.len() != model.joints.len() {
+            return Err(format!("has {} joints, `joints` gives {}", model.joints.len(), joints.len()));
+        }
+        q.joints[finger] = FingerJoints::from_slice(joints);
+        if !task.hand.within_limits(finger, &q.joints[finger]) {
+            return Err("is outside its joint limits".into());
+        }
+    }
+    let Some(point) = entry.contact else { return Ok(()) };
+    let contact = on_surface(task, point.into())?;
+    q.contacts[finger] = Some(contact);
+    let radius = task.hand.fingertip_radius();
+    let p_HF = q.contact_tip_center(finger, radius).expect("the contact was just set");
+    if entry.joints.is_some()
+        && (task.hand.tip_center(finger, &q.joints[finger]) - p_HF).norm() > JOINT_TOLERANCE
+    {
+        return Err("does not touch its `contact` with the given `joints` (more than 1 mm away)".into());
+    }
+    let reach = task.hand.inverse(finger, &p_HF, &q.joints[finger]);
+    q.joints[finger] = reach.ok_or("cannot reach its contact within its joint limits")?;
+    Ok(())
+}
+
+/// The contact at a point that should lie on the surface (m, in O).
+fn on_surface(task: &Task<'_>, p_OC: regrasp_api::Vec3) -> Result<Contact, String> {
+    if !p_OC.iter().all(|x| x.is_finite()) {
+        return Err("has a `contact` that is not finite".into());
+    }
+    let projection = task.surface.project(&p_OC, None);
+    if projection.distance.abs() > CONTACT_TOLERANCE {
+        let far = projection.distance * 1e3;
+        return Err(format!("has a `contact` {far:.2} mm off the object's surface; at most 1 mm is allowed"));
+    }
+    // From a little outside, the closest point has the facet's own normal, whichever side the given point lay on.
+    let lifted = projection.contact.p_OC + projection.contact.n_O * task.hand.fingertip_radius();
+    Ok(task.surface.project(&lifted, Some(projection.contact.facet)).contact)
+}
+
+/// Whether the grasp is stable with the object's own friction (no planner's margin).
+fn stable(task: &Task<'_>, q: &Configuration, context: &mut Context<'_>) -> Result<bool, CallError> {
+    let mut grasp = regrasp_api::Grasp::new(q.X_HO.rotation.inverse() * task.g_H);
+    for (finger, contact) in q.contacts.iter() {
+        let Some(contact) = contact else { continue };
+        let cone = task.contact_model.cone(contact, task.object.friction);
+        grasp.push(GraspContact { finger, p_OC: contact.p_OC, n_O: contact.n_O, cone });
+    }
+    Ok(!grasp.contacts().is_empty()
+        && task.stability.test(&grasp, &mut Default::default(), context)?.is_stable())
+}
+
+/// A warning where a given start or goal would not be admitted as a node.
+pub(crate) fn warning(
+    task: &Task<'_>,
+    end: End,
+    q: &Configuration,
+    context: &mut Context<'_>,
+) -> Result<Option<String>, CallError> {
+    let refused = task.admissible.admit(task, q, context)?;
+    Ok(refused.map(|reason| format!("the given grasp at `{end}` may be a dead end: {}", explain(reason))))
+}
+
+/// Grasps at a pose, found one after the other: the `k`-th is a pure function of its number.
+pub(crate) struct Finder {
+    pub kind: Call,
+    pub leg: u64,
+    pub X_HO: Pose,
+    pub calls: u64,
+}
+
+impl Finder {
+    /// The next grasp, or `None` after as many calls of the sampler as one search may spend.
+    pub fn next(
+        &mut self,
+        session: &Session<'_>,
+        task: &Task<'_>,
+        choices: &[FingerSet],
+        tally: &mut Tally,
+    ) -> Result<Option<Configuration>, CallError> {
+        let end = self.calls + GRASP_CALLS;
+        while self.calls < end {
+            let key = self.leg << 32 | self.calls;
+            self.calls += 1;
+            let found = session.counted(self.kind, key, 0, |context| {
+                let holding = choices[context.random.index(choices.len())];
+                session.drivers.sampler.sample(task, PoseRequest::At(self.X_HO), holding, context)
+            });
+            tally.add(&found.tally);
+            if let Some(q) = found.result? {
+                return Ok(Some(q));
+            }
+        }
+        Ok(None)
+    }
+}

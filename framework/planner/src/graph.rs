@@ -1,0 +1,203 @@
+//! The manipulation graph: configurations of GS_n, and the edges between them.
+
+use regrasp_api::{
+    ComponentId, Configuration, Contact, EdgeId, EdgeKind, EdgeVerdict, EdgeView, FingerIndex, GraphView,
+    NodeId, angle_between,
+};
+use regrasp_plan::Segment;
+use std::collections::{BTreeMap, HashSet};
+
+/// The graph of one run; it grows from leg to leg.
+pub(crate) struct Graph {
+    nodes: Vec<Configuration>,
+    edges: Vec<EdgeView>,
+    /// What executes an edge, from its `from` to its `to`.
+    steps: BTreeMap<EdgeId, Vec<Segment>>,
+    next_edge: u32,
+    tried: HashSet<(NodeId, NodeId, EdgeKind)>,
+    component: Vec<ComponentId>,
+    components: Vec<ComponentId>,
+    /// What a turn by one radian counts (m): the object's radius.
+    turn_length: f64,
+}
+
+impl Graph {
+    /// An empty graph whose metric counts a radian of turn as `turn_length` (m).
+    pub fn new(turn_length: f64) -> Self {
+        Self {
+            nodes: Vec::new(),
+            edges: Vec::new(),
+            steps: BTreeMap::new(),
+            next_edge: 0,
+            tried: HashSet::new(),
+            component: Vec::new(),
+            components: Vec::new(),
+            turn_length,
+        }
+    }
+
+    /// Adds a node as a component of its own.
+    pub fn add_node(&mut self, q: Configuration) -> NodeId {
+        let node = NodeId(self.nodes.len() as u32);
+        self.nodes.push(q);
+        self.component.push(ComponentId(node.0));
+        self.components.push(ComponentId(node.0));
+        node
+    }
+
+    /// The configuration of a node.
+    pub fn node(&self, node: NodeId) -> &Configuration {
+        &self.nodes[node.0 as usize]
+    }
+
+    /// How many nodes.
+    pub fn node_count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The components in ascending order.
+    pub fn components(&self) -> &[ComponentId] {
+        &self.components
+    }
+
+    /// Remembers that an edge of this kind was tried.
+    pub fn mark_tried(&mut self, a: NodeId, b: NodeId, kind: EdgeKind) {
+        self.tried.insert((a.min(b), a.max(b), kind));
+    }
+
+    /// Whether an edge of this kind was tried, in either direction.
+    pub fn was_tried(&self, a: NodeId, b: NodeId, kind: EdgeKind) -> bool {
+        self.tried.contains(&(a.min(b), a.max(b), kind))
+    }
+
+    /// Adds an edge and joins the components of its ends.
+    pub fn add_edge(&mut self, from: NodeId, to: NodeId, kind: EdgeKind, verdict: EdgeVerdict) -> EdgeId {
+        let id = EdgeId(self.next_edge);
+        self.next_edge += 1;
+        self.mark_tried(from, to, kind);
+        self.edges.push(EdgeView { id, from, to, kind, verdict });
+        self.merge(from, to);
+        id
+    }
+
+    /// The edge with this id, if it is still in the graph.
+    pub fn edge(&self, id: EdgeId) -> Option<&EdgeView> {
+        self.edges.binary_search_by_key(&id, |edge| edge.id).ok().map(|place| &self.edges[place])
+    }
+
+    /// Sets what is known about an edge.
+    pub fn set_verdict(&mut self, id: EdgeId, verdict: EdgeVerdict) {
+        if let Ok(place) = self.edges.binary_search_by_key(&id, |edge| edge.id) {
+            self.edges[place].verdict = verdict;
+        }
+    }
+
+    /// Stores what executes an edge, from its `from` to its `to`.
+    pub fn set_steps(&mut self, id: EdgeId, steps: Vec<Segment>) {
+        self.set_verdict(id, EdgeVerdict::Executable);
+        self.steps.insert(id, steps);
+    }
+
+    /// What executes an edge, once it is known.
+    pub fn steps(&self, id: EdgeId) -> Option<&[Segment]> {
+        self.steps.get(&id).map(Vec::as_slice)
+    }
+
+    /// Takes an edge out and recomputes the components.
+    pub fn remove_edge(&mut self, id: EdgeId) {
+        self.edges.retain(|edge| edge.id != id);
+        self.steps.remove(&id);
+        self.component = (0..self.nodes.len() as u32).map(ComponentId).collect();
+        self.components = self.component.clone();
+        for (from, to) in self.edges.iter().map(|edge| (edge.from, edge.to)).collect::<Vec<_>>() {
+            self.merge(from, to);
+        }
+    }
+
+    /// The edges in the graph, in ascending order of ids.
+    pub fn edges(&self) -> &[EdgeView] {
+        &self.edges
+    }
+
+    /// The component of a node.
+    pub fn component(&self, node: NodeId) -> ComponentId {
+        self.component[node.0 as usize]
+    }
+
+    /// Distance of two nodes (m): the object's displacement, its turn times the object's radius, and how far the contacts lie
+    /// apart on the object, averaged over the fingers.
+    pub fn distance(&self, a: NodeId, b: NodeId) -> f64 {
+        configuration_distance(self.node(a), self.node(b), self.turn_length)
+    }
+
+    fn merge(&mut self, a: NodeId, b: NodeId) {
+        let (first, second) = (self.component(a), self.component(b));
+        if first == second {
+            return;
+        }
+        let (kept, gone) = (first.min(second), first.max(second));
+        self.component
+            .iter_mut()
+            .filter(|component| **component == gone)
+            .for_each(|component| *component = kept);
+        self.components.retain(|&component| component != gone);
+    }
+}
+
+/// The planner's metric; see [`Graph::distance`].
+pub(crate) fn configuration_distance(a: &Configuration, b: &Configuration, turn_length: f64) -> f64 {
+    let displacement = (a.X_HO.translation.vector - b.X_HO.translation.vector).norm();
+    let turn = angle_between(&a.X_HO.rotation, &b.X_HO.rotation) * turn_length;
+    let apart = |(finger, contact): (FingerIndex, &Option<Contact>)| match (contact, b.contacts[finger]) {
+        (Some(x), Some(y)) => (x.p_OC - y.p_OC).norm(),
+        (None, None) => 0.0,
+        _ => turn_length,
+    };
+    displacement + turn + a.contacts.iter().map(apart).sum::<f64>() / a.contacts.len() as f64
+}
+
+/// The graph as the strategy of one leg sees it.
+pub(crate) struct LegView<'a> {
+    pub graph: &'a Graph,
+    pub start: NodeId,
+    pub goals: &'a [NodeId],
+    pub generated: (usize, usize),
+}
+
+impl GraphView for LegView<'_> {
+    fn node_count(&self) -> usize {
+        self.graph.node_count()
+    }
+    fn generated(&self) -> (usize, usize) {
+        self.generated
+    }
+    fn start(&self) -> NodeId {
+        self.start
+    }
+    fn goals(&self) -> &[NodeId] {
+        self.goals
+    }
+    fn component(&self, node: NodeId) -> ComponentId {
+        self.graph.component(node)
+    }
+    fn components(&self) -> &[ComponentId] {
+        self.graph.components()
+    }
+    fn joined(&self) -> bool {
+        let start = self.graph.component(self.start);
+        self.goals.iter().any(|&goal| self.graph.component(goal) == start)
+    }
+    fn distance(&self, a: NodeId, b: NodeId) -> f64 {
+        self.graph.distance(a, b)
+    }
+    fn attempted(&self, a: NodeId, b: NodeId, kind: EdgeKind) -> bool {
+        self.graph.was_tried(a, b, kind)
+    }
+    fn edges(&self) -> &[EdgeView] {
+        self.graph.edges()
+    }
+    fn shortest_path(&self) -> Vec<EdgeId> {
+        let path = crate::query::shortest_path(self.graph, self.start, self.goals).unwrap_or_default();
+        path.into_iter().map(|step| step.edge).collect()
+    }
+}

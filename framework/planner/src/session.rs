@@ -1,0 +1,121 @@
+//! What one run shares: the plugins, the keyed random streams, the threads that compute ahead.
+
+use rayon::prelude::*;
+use regrasp_api::{
+    ClosedChainSampler, Context, GraphStrategy, Interrupt, LocalPlanner, Pose, Random, Tally, Task,
+};
+use std::collections::VecDeque;
+
+/// The plugins that drive the search; contact model, stability test and surface are in the [`Task`].
+#[derive(Clone, Copy)]
+pub struct Drivers<'a> {
+    /// Samples closed chains.
+    pub sampler: &'a dyn ClosedChainSampler,
+    /// Connects inside GS_n.
+    pub grasp: &'a dyn LocalPlanner,
+    /// Moves the object by rolling.
+    pub transfer: &'a dyn LocalPlanner,
+    /// Moves one finger.
+    pub regrasp: &'a dyn LocalPlanner,
+    /// Decides what to do next.
+    pub strategy: &'a dyn GraphStrategy,
+}
+
+/// The kinds of expensive calls: each with its own random streams.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Call {
+    /// Search for a grasp at the start's pose.
+    Start = 1,
+    /// Search for a grasp at a goal's pose.
+    Goal = 2,
+    /// One step of the strategy.
+    Strategy = 3,
+    /// A sample anywhere.
+    Sample = 4,
+    /// A sample near a node.
+    Extend = 5,
+    /// A path in GS_n between two nodes.
+    Grasp = 6,
+    /// Transfer and regrasps between two nodes.
+    TransferRegrasp = 7,
+    /// Decomposition of an edge.
+    Decompose = 8,
+    /// One try of the smoother.
+    Smooth = 9,
+}
+
+/// A run's shared, immutable side.
+pub(crate) struct Session<'a> {
+    pub drivers: Drivers<'a>,
+    pub seed: u64,
+    pub interrupt: &'a dyn Interrupt,
+    pub pool: Option<rayon::ThreadPool>,
+}
+
+/// The result of a call with what it counted; the counts are charged when the result is consumed.
+pub(crate) struct Counted<T> {
+    pub result: T,
+    pub tally: Tally,
+}
+
+impl<'a> Session<'a> {
+    /// The context of the call with the key `(kind, a, b)`: its random stream depends on nothing else but the seed.
+    pub fn context(&self, kind: Call, a: u64, b: u64) -> Context<'a> {
+        Context::new(Random::from_key(self.seed, kind as u64, a, b), self.interrupt)
+    }
+
+    /// Runs `call` in the context of its key, and returns its result with what it counted.
+    pub fn counted<T>(
+        &self,
+        kind: Call,
+        a: u64,
+        b: u64,
+        call: impl FnOnce(&mut Context<'_>) -> T,
+    ) -> Counted<T> {
+        let mut context = self.context(kind, a, b);
+        let result = call(&mut context);
+        Counted { result, tally: context.tally }
+    }
+
+    /// The results of `call(0), call(1), …` in order, computed ahead by the threads there are.
+    ///
+    /// The caller may stop anywhere: with one thread nothing beyond that was computed, with several it is thrown away.
+    pub fn ahead<'s, T: Send + 's>(
+        &'s self,
+        count: usize,
+        call: impl Fn(usize) -> T + Sync + 's,
+    ) -> impl Iterator<Item = T> + 's {
+        let mut ready = VecDeque::new();
+        let mut next = 0;
+        std::iter::from_fn(move || {
+            if ready.is_empty() && next < count {
+                let end = count.min(next + self.threads());
+                ready.extend(self.compute(next..end, &call));
+                next = end;
+            }
+            ready.pop_front()
+        })
+    }
+
+    /// The results of `call(0), …, call(count - 1)`, computed by the threads there are.
+    pub fn draw<T: Send>(&self, count: usize, call: impl Fn(usize) -> T + Sync) -> Vec<T> {
+        self.compute(0..count, &call)
+    }
+
+    /// How many threads compute.
+    pub fn threads(&self) -> usize {
+        self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
+    }
+
+    fn compute<T: Send>(&self, range: std::ops::Range<usize>, call: &(impl Fn(usize) -> T + Sync)) -> Vec<T> {
+        match &self.pool {
+            Some(pool) if range.len() > 1 => pool.install(|| range.into_par_iter().map(call).collect()),
+            _ => range.map(call).collect(),
+        }
+    }
+}
+
+/// The task of one leg: the search's landmarks are its start and its goal.
+pub(crate) fn leg_task<'a>(task: &Task<'a>, landmarks: &'a [Pose]) -> Task<'a> {
+    Task { landmarks, ..*task }
+}

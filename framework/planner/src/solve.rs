@@ -1,0 +1,312 @@
+//! A whole run: start and goals, one search a goal, smoothing, timing.
+
+use crate::admissible::Leavable;
+use crate::endpoints::{self, Finder};
+use crate::error::{End, PlanError};
+use crate::graph::Graph;
+use crate::report::{Clock, Outcome, Progress, Status, Stuck};
+use crate::search::Search;
+use crate::session::{Call, Drivers, Session, leg_task};
+use crate::smooth::{Mark, Smoother, regrasps};
+use regrasp_api::{
+    CallError, Clearance, Configuration, ContactModel, FingerGrasp, FingerSet, Hand, Interrupt, NodeId,
+    ObjectModel, Pose, PoseDescription, Problem, StabilityTest, SurfaceParam, Tally, Task, Vec3,
+};
+use regrasp_plan::{Motion, Segment, Statistics, TimingLimits, assign_times, plugin_statistics};
+
+/// How far beyond start and goals the object may be sampled, where the problem gives no workspace (m).
+const WORKSPACE_MARGIN: f64 = 0.015;
+/// How many grasps are looked for at a goal given by its pose alone before the search starts.
+const FIRST_GOALS: usize = 2;
+
+/// Everything a run needs.
+#[derive(Clone, Copy)]
+pub struct Request<'a> {
+    /// Start, goals, gravity, workspace and limits; hand and object are taken from below.
+    pub problem: &'a Problem,
+    /// The hand.
+    pub hand: &'a dyn Hand,
+    /// Collision and distance, built with the planner's clearance.
+    pub clearance: &'a dyn Clearance,
+    /// The object.
+    pub object: &'a ObjectModel,
+    /// Which wrenches contacts transmit.
+    pub contact_model: &'a dyn ContactModel,
+    /// Which grasps are stable.
+    pub stability: &'a dyn StabilityTest,
+    /// The object's surface.
+    pub surface: &'a dyn SurfaceParam,
+    /// The plugins that drive the search.
+    pub drivers: Drivers<'a>,
+    /// Seed of all random streams.
+    pub seed: u64,
+    /// How many threads compute; the result does not depend on it.
+    pub threads: usize,
+    /// Stops the run from outside.
+    pub interrupt: &'a dyn Interrupt,
+    /// Times the phases.
+    pub clock: &'a dyn Clock,
+    /// Told how far the run is.
+    pub progress: &'a dyn Progress,
+}
+
+/// Plans a motion from the start through all goals.
+pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
+    let poses = poses(request.problem)?;
+    let (lower, upper) = workspace(request.problem, &poses);
+    let task = Task {
+        hand: request.hand,
+        clearance: request.clearance,
+        contact_model: request.contact_model,
+        stability: request.stability,
+        surface: request.surface,
+        admissible: &Leavable,
+        object: request.object,
+        g_H: Vec3::from(request.problem.gravity),
+        tolerances: &request.problem.limits.tolerances,
+        resolution: &request.problem.limits.resolution,
+        workspace: (lower, upper),
+        landmarks: &poses,
+    };
+    let choices = finger_choices(&task)?;
+    let session = Session {
+        drivers: request.drivers,
+        seed: request.seed,
+        interrupt: request.interrupt,
+        pool: pool(request.threads),
+    };
+    let mut run = Run {
+        request,
+        session: &session,
+        task,
+        poses: &poses,
+        choices,
+        graph: Graph::new(request.object.mesh.radius()),
+        segments: Vec::new(),
+        marks: Vec::new(),
+        statistics: Statistics::default(),
+        tally: Tally::default(),
+        warnings: Vec::new(),
+    };
+    let ended = run.legs();
+    run.finish(ended)
+}
+
+/// Start and goals as poses; two in turn that coincide are refused where no grasp tells them apart.
+fn poses(problem: &Problem) -> Result<Vec<Pose>, PlanError> {
+    let read = |end, pose: &PoseDescription| pose.pose().map_err(|reason| PlanError::Pose { end, reason });
+    let mut poses = vec![read(End::Start, &problem.start.pose)?];
+    for (index, goal) in problem.goal.iter().enumerate() {
+        let pose = read(End::Goal(index), &goal.pose)?;
+        let before = poses[index];
+        let apart = (pose.translation.vector - before.translation.vector).norm()
+            + regrasp_api::angle_between(&pose.rotation, &before.rotation);
+        if apart < 1e-9 && goal.grasp.is_none() {
+            return Err(PlanError::Coincide(index));
+        }
+        poses.push(pose);
+    }
+    Ok(poses)
+}
+
+fn workspace(problem: &Problem, poses: &[Pose]) -> (Vec3, Vec3) {
+    if let Some(given) = problem.workspace {
+        return (given.lower.into(), given.upper.into());
+    }
+    let margin = Vec3::repeat(WORKSPACE_MARGIN);
+    let positions = || poses.iter().map(|pose| pose.translation.vector);
+    let lower = positions().reduce(|a, b| a.inf(&b)).unwrap_or_default();
+    let upper = positions().reduce(|a, b| a.sup(&b)).unwrap_or_default();
+    (lower - margin, upper + margin)
+}
+
+/// The sets of fingers that may hold the object: GS_n and beyond.
+fn finger_choices(task: &Task<'_>) -> Result<Vec<FingerSet>, PlanError> {
+    let (fingers, fewest) = (task.hand.finger_count(), task.contact_model.fewest_contacts());
+    if fingers < fewest + 1 {
+        return Err(PlanError::TooFewFingers { fingers, fewest });
+    }
+    let all = FingerSet::first(fingers);
+    let subsets = (0..=u8::MAX).map(FingerSet::from_bits).filter(|&set| set.intersection(all) == set);
+    Ok(subsets.filter(|set| set.len() > fewest).collect())
+}
+
+fn pool(threads: usize) -> Option<rayon::ThreadPool> {
+    // Where the system grants no threads the run goes on with one: the plan is the same.
+    (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()).flatten()
+}
+
+/// Why the legs ended before the last goal.
+enum Halt {
+    Stuck(Stuck),
+    Failed(PlanError),
+}
+
+impl From<CallError> for Halt {
+    fn from(error: CallError) -> Self {
+        Self::Failed(error.into())
+    }
+}
+
+impl From<PlanError> for Halt {
+    fn from(error: PlanError) -> Self {
+        Self::Failed(error)
+    }
+}
+
+struct Run<'a> {
+    request: &'a Request<'a>,
+    session: &'a Session<'a>,
+    task: Task<'a>,
+    poses: &'a [Pose],
+    choices: Vec<FingerSet>,
+    graph: Graph,
+    segments: Vec<Segment>,
+    marks: Vec<Mark>,
+    statistics: Statistics,
+    tally: Tally,
+    warnings: Vec<String>,
+}
+
+impl Run<'_> {
+    fn legs(&mut self) -> Result<(), Halt> {
+        let grasp = self.request.problem.start.grasp.as_deref();
+        let (start, _) = self.timed("endpoints", |run| run.end(End::Start, run.poses[0], grasp))?;
+        let mut node = *start.first().ok_or(Halt::Stuck(Stuck::StartGrasp))?;
+        for leg in 0..self.request.problem.goal.len() {
+            node = self.leg(leg, node)?;
+        }
+        Ok(())
+    }
+
+    /// One leg: the goal's grasps, the search, and the node in which it ends.
+    fn leg(&mut self, leg: usize, start: NodeId) -> Result<NodeId, Halt> {
+        let grasp = self.request.problem.goal[leg].grasp.as_deref();
+        let (goals, finder) =
+            self.timed("endpoints", |run| run.end(End::Goal(leg), run.poses[leg + 1], grasp))?;
+        if goals.is_empty() {
+            return Err(Halt::Stuck(Stuck::GoalGrasp(leg)));
+        }
+        let segments = self.timed("search", |run| run.search(leg, start, goals, finder))?;
+        let segments = segments.ok_or(Halt::Stuck(Stuck::Search(leg)))?;
+        self.segments.extend(segments);
+        self.marks.push(Mark { boundary: self.segments.len(), grasp_given: grasp.is_some() });
+        let end = self.segments.last().and_then(|segment| segment.states.last());
+        let is_end = |node: &NodeId| Some(self.graph.node(*node)) == end;
+        Ok((0..self.graph.node_count() as u32).map(NodeId).find(is_end).unwrap_or(start))
+    }
+
+    fn search(
+        &mut self,
+        leg: usize,
+        start: NodeId,
+        goals: Vec<NodeId>,
+        finder: Option<Finder>,
+    ) -> Result<Option<Vec<Segment>>, CallError> {
+        let mut search = Search {
+            session: self.session,
+            task: leg_task(&self.task, &self.poses[leg..leg + 2]),
+            graph: &mut self.graph,
+            tally: &mut self.tally,
+            leg: leg as u64,
+            start,
+            goals,
+            finder,
+            choices: &self.choices,
+            max_nodes: self.request.problem.limits.budget.max_nodes,
+            progress: self.request.progress,
+            drawn: Default::default(),
+            generated: 0,
+            samples: 0,
+        };
+        let found = search.run();
+        self.statistics.generated_nodes += search.generated;
+        found
+    }
+
+    /// The nodes of one end of the problem, and what finds more of them.
+    fn end(
+        &mut self,
+        end: End,
+        X_HO: Pose,
+        grasp: Option<&[FingerGrasp]>,
+    ) -> Result<(Vec<NodeId>, Option<Finder>), Halt> {
+        let (kind, leg, count) = match end {
+            End::Start => (Call::Start, 0, 1),
+            End::Goal(index) => (Call::Goal, index as u64, FIRST_GOALS),
+        };
+        if let Some(grasp) = grasp {
+            let q = self.given(end, X_HO, grasp)?;
+            return Ok((vec![self.graph.add_node(q)], None));
+        }
+        let mut finder = Finder { kind, leg, X_HO, calls: 0 };
+        let mut nodes = Vec::new();
+        for _ in 0..count {
+            let found = finder.next(self.session, &self.task, &self.choices, &mut self.tally)?;
+            nodes.extend(found.map(|q| self.graph.add_node(q)));
+        }
+        Ok((nodes, Some(finder)))
+    }
+
+    fn given(&mut self, end: End, X_HO: Pose, grasp: &[FingerGrasp]) -> Result<Configuration, PlanError> {
+        let mut context = self.session.context(Call::Start, 1, 0);
+        let q = endpoints::given(&self.task, end, X_HO, grasp, &mut context)?;
+        self.warnings.extend(endpoints::warning(&self.task, end, &q, &mut context)?);
+        Ok(q)
+    }
+
+    /// Smooths and times what was found, and reports how the run ended.
+    fn finish(mut self, ended: Result<(), Halt>) -> Result<Outcome, PlanError> {
+        let (status, stuck) = match ended {
+            Ok(()) => (Status::Solved, None),
+            Err(Halt::Stuck(stuck)) => (Status::NoPlan, Some(stuck)),
+            Err(Halt::Failed(PlanError::Call(CallError::Interrupted))) => (Status::Interrupted, None),
+            Err(Halt::Failed(error)) => return Err(error),
+        };
+        let goals_reached = self.marks.len();
+        self.count_graph();
+        match self.timed("smoothing", Self::smooth) {
+            // Interrupted here, the motion is complete, only less smooth than it could be.
+            Ok(()) | Err(CallError::Interrupted) => {}
+            Err(error) => return Err(error.into()),
+        }
+        let mut motion = Motion { segments: std::mem::take(&mut self.segments) };
+        self.timed("timing", |run| assign_times(&mut motion, run.request.hand, &TimingLimits::default()))?;
+        self.statistics.regrasps = regrasps(&motion.segments);
+        self.statistics.transfers = motion.segments.len() - self.statistics.regrasps;
+        self.statistics.plugins = plugin_statistics(&self.tally);
+        let Self { statistics, tally, warnings, .. } = self;
+        Ok(Outcome { status, stuck, motion, goals_reached, statistics, tally, warnings })
+    }
+
+    fn count_graph(&mut self) {
+        self.statistics.graph_nodes = self.graph.node_count();
+        self.statistics.components = self.graph.components().len();
+        self.statistics.regrasps_before_smoothing = regrasps(&self.segments);
+    }
+
+    /// Does `work`, and adds the time it takes to the phase.
+    fn timed<T>(&mut self, phase: &str, work: impl FnOnce(&mut Self) -> T) -> T {
+        let begin = self.request.clock.seconds();
+        let done = work(self);
+        *self.statistics.time_s.entry(phase.into()).or_default() += self.request.clock.seconds() - begin;
+        done
+    }
+
+    fn smooth(&mut self) -> Result<(), CallError> {
+        if self.segments.is_empty() {
+            return Ok(());
+        }
+        self.request.progress.smoothing(self.segments.len());
+        let tries = self.request.problem.limits.budget.smoothing * self.segments.len();
+        let mut smoother = Smoother {
+            session: self.session,
+            task: &self.task,
+            segments: std::mem::take(&mut self.segments),
+            marks: std::mem::take(&mut self.marks),
+        };
+        let smoothed = smoother.run(tries, &mut self.tally);
+        (self.segments, self.marks) = (smoother.segments, smoother.marks);
+        smoothed
+    }
+}

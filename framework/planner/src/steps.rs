@@ -1,0 +1,142 @@
+//! Executable steps between two configurations: transfers and regrasps (Algorithm 3 and the decomposition).
+
+use crate::session::Session;
+use regrasp_api::{CallError, Configuration, Context, FingerIndex, FingerSet, Path, Reached, Target, Task};
+use regrasp_plan::{Segment, SegmentKind};
+
+/// Rolls the object towards the pose of `to`, and stores the motion as a segment if it moved at all.
+pub(crate) fn transfer(
+    session: &Session<'_>,
+    task: &Task<'_>,
+    from: &Configuration,
+    to: &Configuration,
+    context: &mut Context<'_>,
+) -> Result<(Reached, Segment), CallError> {
+    let mut path = Path::default();
+    let reached = session.drivers.transfer.connect(
+        task,
+        from,
+        &Target::Transfer(&to.X_HO),
+        Some(&mut path),
+        context,
+    )?;
+    Ok((reached, Segment { kind: SegmentKind::Transfer, states: path.states, times: Vec::new() }))
+}
+
+/// Transfer from `from` to the pose of `to`, then regrasps to its contacts; `None` if that fails.
+pub(crate) fn transfer_then_regrasp(
+    session: &Session<'_>,
+    task: &Task<'_>,
+    from: &Configuration,
+    to: &Configuration,
+    context: &mut Context<'_>,
+) -> Result<Option<Vec<Segment>>, CallError> {
+    let mut steps = Vec::new();
+    let mut there = from.clone();
+    if from.X_HO != to.X_HO {
+        let (reached, segment) = transfer(session, task, from, to, context)?;
+        if !reached.is_complete() {
+            return Ok(None);
+        }
+        steps.push(segment);
+        there = reached.end;
+    }
+    let Some(regrasps) = regrasp_all(session, task, &there, to, context)? else { return Ok(None) };
+    steps.extend(regrasps);
+    Ok(Some(steps))
+}
+
+/// As [`transfer_then_regrasp`], also tried backwards: a motion reversed is a motion.
+pub(crate) fn connect(
+    session: &Session<'_>,
+    task: &Task<'_>,
+    from: &Configuration,
+    to: &Configuration,
+    context: &mut Context<'_>,
+) -> Result<Option<Vec<Segment>>, CallError> {
+    if let Some(steps) = transfer_then_regrasp(session, task, from, to, context)? {
+        return Ok(Some(steps));
+    }
+    Ok(transfer_then_regrasp(session, task, to, from, context)?.map(reversed))
+}
+
+/// The steps backwards: stored states reversed, nothing integrated again.
+pub(crate) fn reversed(mut steps: Vec<Segment>) -> Vec<Segment> {
+    steps.reverse();
+    steps.iter_mut().for_each(|segment| segment.states.reverse());
+    steps
+}
+
+/// The fingers whose contact or joints differ between two configurations.
+pub(crate) fn differing(a: &Configuration, b: &Configuration) -> FingerSet {
+    let differs = |&finger: &FingerIndex| {
+        a.contacts[finger] != b.contacts[finger] || a.joints[finger] != b.joints[finger]
+    };
+    a.contacts.fingers().filter(differs).collect()
+}
+
+/// Moves the fingers one after the other from `from` to the contacts of `to`, the object resting; `None` if no order works.
+pub(crate) fn regrasp_all(
+    session: &Session<'_>,
+    task: &Task<'_>,
+    from: &Configuration,
+    to: &Configuration,
+    context: &mut Context<'_>,
+) -> Result<Option<Vec<Segment>>, CallError> {
+    let mut order = Order { session, task, to, dead: [false; 256], steps: Vec::new() };
+    let moved = differing(from, to);
+    Ok(if order.search(from, moved, context)? { Some(order.steps) } else { None })
+}
+
+/// Depth-first search over the orders of the fingers; what is left to move decides success, so dead sets are remembered.
+struct Order<'a> {
+    session: &'a Session<'a>,
+    task: &'a Task<'a>,
+    to: &'a Configuration,
+    dead: [bool; 256],
+    steps: Vec<Segment>,
+}
+
+impl Order<'_> {
+    fn search(
+        &mut self,
+        q: &Configuration,
+        left: FingerSet,
+        context: &mut Context<'_>,
+    ) -> Result<bool, CallError> {
+        if left.is_empty() {
+            return Ok(true);
+        }
+        if self.dead[usize::from(left.bits())] {
+            return Ok(false);
+        }
+        for finger in left.iter() {
+            context.proceed()?;
+            let Some(segment) = self.regrasp(q, finger, context)? else { continue };
+            let next = segment.states.last().expect("a regrasp has two ends").clone();
+            self.steps.push(segment);
+            if self.search(&next, left.without(finger), context)? {
+                return Ok(true);
+            }
+            self.steps.pop();
+        }
+        self.dead[usize::from(left.bits())] = true;
+        Ok(false)
+    }
+
+    fn regrasp(
+        &self,
+        q: &Configuration,
+        finger: FingerIndex,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Segment>, CallError> {
+        let mut path = Path::default();
+        let (contact, joints) = (self.to.contacts[finger].as_ref(), &self.to.joints[finger]);
+        let target = Target::Regrasp { finger, contact, joints };
+        let reached =
+            self.session.drivers.regrasp.connect(self.task, q, &target, Some(&mut path), context)?;
+        let segment =
+            || Segment { kind: SegmentKind::Regrasp(finger), states: path.states, times: Vec::new() };
+        Ok(reached.is_complete().then(segment))
+    }
+}
