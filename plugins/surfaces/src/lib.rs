@@ -1,1 +1,7 @@
-//! Under construction.
+//! Built-in surfaces: points, shortest paths and projections on the object.
+
+mod bvh;
+mod closest;
+pub mod geodesic;
+mod polyhedron;
+mod sharp;

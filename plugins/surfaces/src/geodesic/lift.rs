@@ -1,0 +1,50 @@
+//! The path of the fingertip above a path of the contact point.
+
+use super::trace::Leg;
+use crate::polyhedron::Polyhedron;
+use regrasp_api::{Contact, SurfacePath, Vec3};
+
+/// Angles (rad) and lengths (m) below this do not make a waypoint of their own.
+const NEGLIGIBLE: f64 = 1e-12;
+
+/// The angle between two unit vectors (rad).
+pub(super) fn angle(a: &Vec3, b: &Vec3) -> f64 {
+    a.cross(b).norm().atan2(a.dot(b))
+}
+
+/// Rolls a ball of the given radius (m) over the facets of `legs`: straight over a facet, turning about its contact at a
+/// convex edge. Exact on a convex solid.
+pub(super) fn lift(
+    polyhedron: &Polyhedron,
+    radius: f64,
+    from: &Contact,
+    to: &Contact,
+    legs: &[Leg],
+    path: &mut SurfacePath,
+) {
+    path.restart(*from);
+    for (index, leg) in legs.iter().enumerate() {
+        let n_O = polyhedron.mesh.normal(leg.facet);
+        let end = legs.get(index + 1).map_or(to.p_OC, |next| next.p_OP);
+        advance(path, Contact { facet: leg.facet, p_OC: leg.p_OP, n_O }, radius);
+        advance(path, Contact { facet: leg.facet, p_OC: end, n_O }, radius);
+    }
+    advance(path, *to, radius);
+    // The end is exactly the contact that was asked for, also where it adds no length.
+    if let Some(last) = path.waypoints.last_mut() {
+        last.contact = *to;
+    }
+    if path.waypoints.len() == 1 && from != to {
+        path.push(*to, 0.0);
+        path.waypoints[0].contact = *from;
+    }
+}
+
+/// Appends a contact that differs from the last in its point or in its normal.
+fn advance(path: &mut SurfacePath, contact: Contact, radius: f64) {
+    let last = path.waypoints[path.waypoints.len() - 1].contact;
+    let travelled = (contact.p_OC - last.p_OC).norm() + radius * angle(&last.n_O, &contact.n_O);
+    if travelled > NEGLIGIBLE {
+        path.push(contact, travelled);
+    }
+}

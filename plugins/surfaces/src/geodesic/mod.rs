@@ -1,0 +1,171 @@
+//! `surface/geodesic`: exact shortest paths on the object's facets, and the fingertip's path above them.
+//!
+//! The facets are the true surface. Contacts live on the offset surface (object ⊕ fingertip ball): on a facet the normal
+//! is the facet's, on a convex edge it is any direction between those of its two facets.
+
+mod bound;
+mod lift;
+mod trace;
+mod walk;
+mod windows;
+
+use crate::closest::ClosestPoints;
+use crate::polyhedron::Polyhedron;
+use crate::sharp::SharpEdges;
+use bound::LowerBound;
+use regrasp_api::{
+    Build, BuildError, Built, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings,
+    SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, check_range, check_settings, inventory,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
+use trace::Leg;
+use windows::{Scratch, Search, Site};
+
+inventory::submit! {
+    Entry {
+        id: "surface/geodesic",
+        slots: &[Slot::Surface],
+        summary: "Exact shortest paths on the object's facets, followed by the fingertip",
+        references: &[
+            "Mitchell, Mount & Papadimitriou, The discrete geodesic problem, SIAM J. Comput. 16, 1987",
+            "Xin & Wang, Improving Chen and Han's algorithm on the discrete geodesic problem, ACM TOG 28, 2009",
+            "Polthier & Schmies, Straightest geodesics on polyhedral surfaces, 1998",
+            "Bærentzen & Aanæs, Signed distance computation using the angle weighted pseudonormal, IEEE TVCG 11, 2005",
+        ],
+        schema: GeodesicSettings::schema,
+        check: check_settings::<GeodesicSettings>,
+        build: Build::Surface(build),
+    }
+}
+
+fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
+    let settings = GeodesicSettings::from_json(json)?;
+    Ok(Box::new(Geodesic::new(&settings, &parts.object.mesh, parts.hand.fingertip_radius())?))
+}
+
+/// Settings of [`Geodesic`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct GeodesicSettings {
+    /// An edge is sharp where its facets' normals differ by more than this angle, in 1..=180 degrees. Default 30, a neutral choice.
+    pub sharp_angle_deg: f64,
+    /// By how much a path may be longer than the shortest one, relative, in 1e-9..=1e-3. Default 2e-4, a neutral choice.
+    pub tolerance: f64,
+}
+
+impl Default for GeodesicSettings {
+    fn default() -> Self {
+        Self { sharp_angle_deg: 30.0, tolerance: 2e-4 }
+    }
+}
+
+impl Settings for GeodesicSettings {
+    fn validate(&self) -> Result<(), SettingsError> {
+        check_range("sharp_angle_deg", self.sharp_angle_deg, 1.0, 180.0)?;
+        check_range("tolerance", self.tolerance, 1e-9, 1e-3)
+    }
+}
+
+/// The surface of a polyhedron under a fingertip of one radius.
+#[derive(Clone, Debug)]
+pub struct Geodesic {
+    settings: GeodesicSettings,
+    radius: f64,
+    polyhedron: Polyhedron,
+    closest: ClosestPoints,
+    sharp: SharpEdges,
+    /// Sum of the facets' areas up to and with each facet (m²).
+    areas: Vec<f64>,
+}
+
+/// What a path needs beside the answer; one a thread, overwritten by every call.
+#[derive(Default)]
+struct Workspace {
+    search: Scratch,
+    legs: Vec<Leg>,
+}
+
+thread_local! {
+    static WORKSPACE: RefCell<Workspace> = RefCell::new(Workspace::default());
+}
+
+impl Geodesic {
+    /// Prepares the surface of `mesh` for fingertips of the given radius (m).
+    pub fn new(settings: &GeodesicSettings, mesh: &Mesh, radius: f64) -> Result<Self, BuildError> {
+        settings.validate()?;
+        let polyhedron = Polyhedron::new(mesh);
+        let mut sum = 0.0;
+        let areas = (0..mesh.facets().len() as u32).map(|facet| {
+            sum += mesh.area(facet);
+            sum
+        });
+        Ok(Self {
+            settings: *settings,
+            radius,
+            areas: areas.collect(),
+            closest: ClosestPoints::new(&polyhedron),
+            sharp: SharpEdges::new(&polyhedron, settings.sharp_angle_deg.to_radians()),
+            polyhedron,
+        })
+    }
+
+    /// A point uniform over the facets' area, with its facet's normal.
+    fn on_facets(&self, random: &mut Random) -> Contact {
+        let wanted = random.unit() * self.areas[self.areas.len() - 1];
+        let facet = self.areas.partition_point(|&sum| sum <= wanted).min(self.areas.len() - 1) as u32;
+        let [a, b, c] = self.polyhedron.mesh.corners(facet);
+        // Turk, "Generating random points in triangles", Graphics Gems, 1990.
+        let (s, t) = (random.unit().sqrt(), random.unit());
+        let p_OC = a * (1.0 - s) + b * (s * (1.0 - t)) + c * (s * t);
+        Contact { facet, p_OC, n_O: self.polyhedron.mesh.normal(facet) }
+    }
+}
+
+impl SurfaceParam for Geodesic {
+    fn sample(&self, random: &mut Random) -> Contact {
+        self.on_facets(random)
+    }
+
+    fn geodesic(
+        &self,
+        from: &Contact,
+        to: &Contact,
+        path: &mut SurfacePath,
+        context: &mut Context<'_>,
+    ) -> Result<bool, CallError> {
+        context.count_call(Slot::Surface);
+        WORKSPACE.with_borrow_mut(|workspace| {
+            let Workspace { search, legs } = workspace;
+            let site = |contact: &Contact| Site {
+                p_OP: contact.p_OC,
+                place: self.polyhedron.place(contact.facet, &contact.p_OC),
+            };
+            let bound = LowerBound::new(to.p_OC);
+            let (start, target) = (site(from), site(to));
+            let job =
+                Search::new(&self.polyhedron, search, bound, &target, self.settings.tolerance, f64::INFINITY);
+            let Some(found) = job.run(&start, context)? else {
+                path.restart(*from);
+                return Ok(false);
+            };
+            trace::trace(&self.polyhedron, search, &found, &to.p_OC, legs);
+            lift::lift(&self.polyhedron, self.radius, from, to, legs, path);
+            path.length = found.length;
+            Ok(true)
+        })
+    }
+
+    fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
+        self.closest.project(&self.polyhedron, p_OF, hint)
+    }
+
+    fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
+        walk::walk(&self.polyhedron, from, direction_O, distance)
+    }
+
+    fn edge_distance(&self, contact: &Contact) -> f64 {
+        self.sharp.distance(contact.facet, &contact.p_OC)
+    }
+}
