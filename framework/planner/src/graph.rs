@@ -201,3 +201,51 @@ impl GraphView for LegView<'_> {
         path.into_iter().map(|step| step.edge).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use regrasp_api::{PerFinger, Pose, Vec3};
+
+    fn at(x: f64) -> Configuration {
+        let X_HO = Pose::translation(x, 0.0, 0.0);
+        Configuration {
+            X_HO,
+            joints: PerFinger::filled(2, Default::default()),
+            contacts: PerFinger::filled(2, None),
+        }
+    }
+
+    fn chain(count: u32) -> (Graph, Vec<EdgeId>) {
+        let mut graph = Graph::new(0.03);
+        for i in 0..count {
+            graph.add_node(at(f64::from(i)));
+        }
+        let join = |i| graph.add_edge(NodeId(i), NodeId(i + 1), EdgeKind::Grasp, EdgeVerdict::Valid);
+        let edges = (0..count - 1).map(join).collect();
+        (graph, edges)
+    }
+
+    #[test]
+    fn components_merge_and_fall_apart_again() {
+        let (mut graph, edges) = chain(5);
+        assert_eq!(graph.components(), [ComponentId(0)]);
+        graph.remove_edge(edges[2]);
+        assert_eq!(graph.components(), [ComponentId(0), ComponentId(3)]);
+        assert_eq!(graph.component(NodeId(4)), ComponentId(3));
+        assert!(graph.was_tried(NodeId(3), NodeId(2), EdgeKind::Grasp), "a removed edge stays tried");
+        assert!(!graph.was_tried(NodeId(3), NodeId(2), EdgeKind::TransferRegrasp));
+    }
+
+    #[test]
+    fn the_metric_counts_displacement_turn_and_contacts() {
+        let mut a = at(0.0);
+        let mut b = at(0.01);
+        b.X_HO.rotation = regrasp_api::Rotation::from_scaled_axis(Vec3::z());
+        assert!((configuration_distance(&a, &b, 0.03) - 0.04).abs() < 1e-12);
+        let contact = |y| Some(Contact { facet: 0, p_OC: Vec3::new(0.0, y, 0.0), n_O: Vec3::z() });
+        a.contacts[FingerIndex(0)] = contact(0.0);
+        b.contacts[FingerIndex(0)] = contact(0.02);
+        assert!((configuration_distance(&a, &b, 0.03) - 0.05).abs() < 1e-12);
+    }
+}

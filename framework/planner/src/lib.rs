@@ -10,6 +10,7 @@
 
 mod admissible;
 mod decompose;
+mod draft;
 mod endpoints;
 mod error;
 mod graph;

@@ -78,3 +78,67 @@ fn trace(came_by: &[Option<(NodeId, Step)>], goal: NodeId) -> Vec<Step> {
     path.reverse();
     path
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use regrasp_api::{Configuration, EdgeKind, EdgeVerdict, PerFinger, Pose, Random};
+
+    fn random_graph(random: &mut Random) -> Graph {
+        let mut graph = Graph::new(0.03);
+        let none = PerFinger::filled(1, None);
+        for _ in 0..12 {
+            let p = random.direction() * random.unit();
+            let joints = PerFinger::filled(1, Default::default());
+            graph.add_node(Configuration { X_HO: Pose::translation(p.x, p.y, p.z), joints, contacts: none });
+        }
+        for _ in 0..16 {
+            let (a, b) = (NodeId(random.index(12) as u32), NodeId(random.index(12) as u32));
+            if a != b {
+                graph.add_edge(a, b, EdgeKind::Grasp, EdgeVerdict::Valid);
+            }
+        }
+        graph
+    }
+
+    /// Shortest distances from every node to `goal` by relaxing all edges until nothing changes.
+    fn relaxed(graph: &Graph, goal: NodeId) -> Vec<f64> {
+        let mut distance = vec![f64::INFINITY; graph.node_count()];
+        distance[goal.0 as usize] = 0.0;
+        for _ in 0..graph.node_count() {
+            for edge in graph.edges() {
+                let (a, b) = (edge.from.0 as usize, edge.to.0 as usize);
+                let length = graph.distance(edge.from, edge.to);
+                distance[a] = distance[a].min(distance[b] + length);
+                distance[b] = distance[b].min(distance[a] + length);
+            }
+        }
+        distance
+    }
+
+    #[test]
+    fn paths_are_as_short_as_exhaustive_relaxation_finds() {
+        let mut random = Random::from_key(3, 0, 0, 0);
+        let mut found = 0;
+        for _ in 0..200 {
+            let graph = random_graph(&mut random);
+            let (start, goals) = (NodeId(0), [NodeId(10), NodeId(11)]);
+            let best = goals.map(|goal| relaxed(&graph, goal)[0]).into_iter().fold(f64::INFINITY, f64::min);
+            let Some(path) = shortest_path(&graph, start, &goals) else {
+                assert!(best.is_infinite());
+                continue;
+            };
+            found += 1;
+            let (mut at, mut length) = (start, 0.0);
+            for step in path {
+                let edge = graph.edge(step.edge).unwrap();
+                let (from, to) = if step.forward { (edge.from, edge.to) } else { (edge.to, edge.from) };
+                assert_eq!(from, at, "the path is connected");
+                length += graph.distance(from, to);
+                at = to;
+            }
+            assert!(goals.contains(&at) && (length - best).abs() < 1e-12);
+        }
+        assert!(found > 50, "{found} of 200 random graphs had a path");
+    }
+}

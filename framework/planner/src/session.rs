@@ -119,3 +119,86 @@ impl<'a> Session<'a> {
 pub(crate) fn leg_task<'a>(task: &Task<'a>, landmarks: &'a [Pose]) -> Task<'a> {
     Task { landmarks, ..*task }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use regrasp_api::{
+        Action, CallError, Configuration, Contact, FingerSet, GraphView, Path, PerFinger, PoseRequest,
+        Reached, Target, Uninterrupted,
+    };
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Fills every driver's place; none is called.
+    struct Idle;
+    impl ClosedChainSampler for Idle {
+        fn sample(
+            &self,
+            _: &Task<'_>,
+            _: PoseRequest<'_>,
+            _: FingerSet,
+            _: &mut Context<'_>,
+        ) -> Result<Option<Configuration>, CallError> {
+            unreachable!()
+        }
+        fn close(
+            &self,
+            _: &Task<'_>,
+            _: &Pose,
+            _: &PerFinger<Option<Contact>>,
+            _: &Configuration,
+            _: &mut Context<'_>,
+        ) -> Result<Option<Configuration>, CallError> {
+            unreachable!()
+        }
+    }
+    impl LocalPlanner for Idle {
+        fn connect(
+            &self,
+            _: &Task<'_>,
+            _: &Configuration,
+            _: &Target<'_>,
+            _: Option<&mut Path>,
+            _: &mut Context<'_>,
+        ) -> Result<Reached, CallError> {
+            unreachable!()
+        }
+    }
+    impl GraphStrategy for Idle {
+        fn next(&self, _: &dyn GraphView, _: &mut Context<'_>) -> Result<Action, CallError> {
+            unreachable!()
+        }
+    }
+
+    fn session(threads: usize) -> Session<'static> {
+        let drivers =
+            Drivers { sampler: &Idle, grasp: &Idle, transfer: &Idle, regrasp: &Idle, strategy: &Idle };
+        let pool =
+            (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap());
+        Session { drivers, seed: 1, interrupt: &Uninterrupted, pool }
+    }
+
+    #[test]
+    fn results_come_in_order_for_any_number_of_threads() {
+        for threads in [1, 2, 3] {
+            let session = session(threads);
+            let values: Vec<_> = session.ahead(10, |i| i * i).collect();
+            assert_eq!(values, (0..10).map(|i| i * i).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn one_thread_computes_nothing_beyond_what_is_consumed() {
+        let calls = AtomicUsize::new(0);
+        let session = session(1);
+        let taken = session.ahead(10, |_| calls.fetch_add(1, Ordering::Relaxed)).take(3).count();
+        assert_eq!((taken, calls.load(Ordering::Relaxed)), (3, 3));
+    }
+
+    #[test]
+    fn streams_depend_on_the_key_alone() {
+        let word = |threads, kind, a, b| session(threads).context(kind, a, b).random.word();
+        assert_eq!(word(1, Call::Sample, 2, 3), word(2, Call::Sample, 2, 3));
+        assert_ne!(word(1, Call::Sample, 2, 3), word(1, Call::Extend, 2, 3));
+    }
+}

@@ -1,13 +1,14 @@
 //! A whole run: start and goals, one search a goal, smoothing, timing.
 
 use crate::admissible::Leavable;
+use crate::draft::{Draft, Mark, regrasps};
 use crate::endpoints::{self, Finder};
 use crate::error::{End, PlanError};
 use crate::graph::Graph;
 use crate::report::{Clock, Outcome, Progress, Status, Stuck};
 use crate::search::Search;
 use crate::session::{Call, Drivers, Session, leg_task};
-use crate::smooth::{Mark, Smoother, regrasps};
+use crate::smooth::Smoother;
 use regrasp_api::{
     CallError, Clearance, Configuration, ContactModel, FingerGrasp, FingerSet, Hand, Interrupt, NodeId,
     ObjectModel, Pose, PoseDescription, Problem, StabilityTest, SurfaceParam, Tally, Task, Vec3,
@@ -82,8 +83,7 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
         poses: &poses,
         choices,
         graph: Graph::new(request.object.mesh.radius()),
-        segments: Vec::new(),
-        marks: Vec::new(),
+        draft: Draft::default(),
         statistics: Statistics::default(),
         tally: Tally::default(),
         warnings: Vec::new(),
@@ -161,8 +161,7 @@ struct Run<'a> {
     poses: &'a [Pose],
     choices: Vec<FingerSet>,
     graph: Graph,
-    segments: Vec<Segment>,
-    marks: Vec<Mark>,
+    draft: Draft,
     statistics: Statistics,
     tally: Tally,
     warnings: Vec<String>,
@@ -189,9 +188,9 @@ impl Run<'_> {
         }
         let segments = self.timed("search", |run| run.search(leg, start, goals, finder))?;
         let segments = segments.ok_or(Halt::Stuck(Stuck::Search(leg)))?;
-        self.segments.extend(segments);
-        self.marks.push(Mark { boundary: self.segments.len(), grasp_given: grasp.is_some() });
-        let end = self.segments.last().and_then(|segment| segment.states.last());
+        self.draft.segments.extend(segments);
+        self.draft.marks.push(Mark { boundary: self.draft.segments.len(), grasp_given: grasp.is_some() });
+        let end = self.draft.segments.last().and_then(|segment| segment.states.last());
         let is_end = |node: &NodeId| Some(self.graph.node(*node)) == end;
         Ok((0..self.graph.node_count() as u32).map(NodeId).find(is_end).unwrap_or(start))
     }
@@ -263,14 +262,14 @@ impl Run<'_> {
             Err(Halt::Failed(PlanError::Call(CallError::Interrupted))) => (Status::Interrupted, None),
             Err(Halt::Failed(error)) => return Err(error),
         };
-        let goals_reached = self.marks.len();
+        let goals_reached = self.draft.marks.len();
         self.count_graph();
         match self.timed("smoothing", Self::smooth) {
             // Interrupted here, the motion is complete, only less smooth than it could be.
             Ok(()) | Err(CallError::Interrupted) => {}
             Err(error) => return Err(error.into()),
         }
-        let mut motion = Motion { segments: std::mem::take(&mut self.segments) };
+        let mut motion = Motion { segments: std::mem::take(&mut self.draft.segments) };
         self.timed("timing", |run| assign_times(&mut motion, run.request.hand, &TimingLimits::default()))?;
         self.statistics.regrasps = regrasps(&motion.segments);
         self.statistics.transfers = motion.segments.len() - self.statistics.regrasps;
@@ -282,7 +281,7 @@ impl Run<'_> {
     fn count_graph(&mut self) {
         self.statistics.graph_nodes = self.graph.node_count();
         self.statistics.components = self.graph.components().len();
-        self.statistics.regrasps_before_smoothing = regrasps(&self.segments);
+        self.statistics.regrasps_before_smoothing = regrasps(&self.draft.segments);
     }
 
     /// Does `work`, and adds the time it takes to the phase.
@@ -294,19 +293,15 @@ impl Run<'_> {
     }
 
     fn smooth(&mut self) -> Result<(), CallError> {
-        if self.segments.is_empty() {
+        if self.draft.segments.is_empty() {
             return Ok(());
         }
-        self.request.progress.smoothing(self.segments.len());
-        let tries = self.request.problem.limits.budget.smoothing * self.segments.len();
-        let mut smoother = Smoother {
-            session: self.session,
-            task: &self.task,
-            segments: std::mem::take(&mut self.segments),
-            marks: std::mem::take(&mut self.marks),
-        };
+        self.request.progress.smoothing(self.draft.segments.len());
+        let tries = self.request.problem.limits.budget.smoothing * self.draft.segments.len();
+        let mut smoother =
+            Smoother { session: self.session, task: &self.task, draft: std::mem::take(&mut self.draft) };
         let smoothed = smoother.run(tries, &mut self.tally);
-        (self.segments, self.marks) = (smoother.segments, smoother.marks);
+        self.draft = smoother.draft;
         smoothed
     }
 }
