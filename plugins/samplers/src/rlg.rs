@@ -11,9 +11,9 @@
 mod pose;
 
 use regrasp_api::{
-    Build, CallError, ClosedChainSampler, Configuration, Contact, Context, Entry, FingerIndex, FingerJoints,
-    FingerSet, PerFinger, Pose, PoseRequest, Reason, Settings, SettingsError, Slot, Task, TipRule,
-    check_count, check_range, check_settings, inventory,
+    Build, CallError, ClosedChainSampler, Configuration, Contact, Context, Entry, FingerIndex, FingerSet,
+    PerFinger, Pose, PoseRequest, Reason, Settings, SettingsError, Slot, Task, check_count, check_range,
+    check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
