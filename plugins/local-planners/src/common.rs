@@ -1,7 +1,7 @@
 //! What the three local planners share: refusals, the order of bisection, bounds of a finger's motion.
 
 use regrasp_api::{
-    CallError, Configuration, Context, FingerIndex, FingerJoints, Hand, JointKind, Reached, Reason,
+    CallError, Configuration, Context, FingerIndex, FingerJoints, Hand, JointKind, Random, Reached, Reason,
     Resolution, Slot,
 };
 
@@ -44,29 +44,57 @@ pub(crate) fn bisection(count: usize) -> impl Iterator<Item = Halving> {
     })
 }
 
-/// A bound (m) of how far any point of the finger travels while its joints move by `differences`.
-///
-/// No point is farther from a joint's axis than the finger is long.
-pub(crate) fn travel(hand: &dyn Hand, finger: FingerIndex, differences: impl Iterator<Item = f64>) -> f64 {
-    let model = hand.finger(finger);
-    let lever = model.reach + hand.fingertip_radius();
-    let weight = |kind| if kind == JointKind::Prismatic { 1.0 } else { lever };
-    model
-        .joints
-        .iter()
-        .zip(differences)
-        .map(|(joint, difference)| weight(joint.kind) * difference.abs())
-        .sum()
+/// How far points of a finger move when one joint does: for each finger and joint the longest lever (m; 1 where prismatic).
+#[derive(Clone, Debug)]
+pub(crate) struct Levers(Vec<FingerJoints>);
+
+/// Random postures in which the levers are measured, besides the corners of the joints' ranges.
+const POSTURES: usize = 256;
+
+impl Levers {
+    /// Measures the fingertip's distance from each joint's axis over many postures, and adds the fingertip's radius.
+    ///
+    /// Links are taken to end no farther from an axis than the tip when it is stretched away from it.
+    pub fn new(hand: &dyn Hand) -> Self {
+        let fingers = (0..hand.finger_count()).map(|i| FingerIndex(i as u8));
+        Self(fingers.map(|finger| longest_levers(hand, finger)).collect())
+    }
+
+    /// A bound (m) of how far any point of the finger travels while its joints move by `differences`.
+    pub fn travel(&self, finger: FingerIndex, differences: impl Iterator<Item = f64>) -> f64 {
+        self.0[finger.index()]
+            .iter()
+            .zip(differences)
+            .map(|(lever, difference)| lever * difference.abs())
+            .sum()
+    }
+
+    /// The same between two postures of the finger.
+    pub fn between(&self, finger: FingerIndex, a: &FingerJoints, b: &FingerJoints) -> f64 {
+        self.travel(finger, a.iter().zip(b.iter()).map(|(a, b)| a - b))
+    }
 }
 
-/// The same between two postures of the finger.
-pub(crate) fn travel_between(
-    hand: &dyn Hand,
-    finger: FingerIndex,
-    a: &FingerJoints,
-    b: &FingerJoints,
-) -> f64 {
-    travel(hand, finger, a.iter().zip(b.iter()).map(|(a, b)| a - b))
+fn longest_levers(hand: &dyn Hand, finger: FingerIndex) -> FingerJoints {
+    let joints = &hand.finger(finger).joints;
+    let mut levers = FingerJoints::zeros(joints.len());
+    let mut random = Random::from_key(0, 0, 0, u64::from(finger.0));
+    let corners = 1_usize << joints.len();
+    for posture in 0..corners + POSTURES {
+        let mut q = FingerJoints::zeros(joints.len());
+        for (j, joint) in joints.iter().enumerate() {
+            let corner = [joint.lower, joint.upper][posture >> j & 1];
+            q[j] = if posture < corners { corner } else { random.range(joint.lower, joint.upper) };
+        }
+        let tip = hand.tip_kinematics(finger, &q);
+        levers.iter_mut().enumerate().for_each(|(j, lever)| *lever = lever.max(tip.J_v.column(j).norm()));
+    }
+    for (lever, joint) in levers.iter_mut().zip(joints) {
+        if joint.kind == JointKind::Revolute {
+            *lever += hand.fingertip_radius();
+        }
+    }
+    levers
 }
 
 /// The most (m) that a finger's points may travel between two stored states.

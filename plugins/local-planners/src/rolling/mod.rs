@@ -4,11 +4,11 @@ mod constraint;
 mod motion;
 mod step;
 
-use crate::common::{largest_travel, wrong_target};
+use crate::common::{Levers, largest_travel, wrong_target};
 use motion::Motion;
 use regrasp_api::{
-    Build, CallError, Configuration, Context, Entry, FingerJoints, Hint, LocalPlanner, Path, PerFinger, Pose,
-    Reached, Reason, Settings, SettingsError, Slot, Target, Task, Vec3, check_count, check_range,
+    Build, CallError, Configuration, Context, Entry, FingerJoints, Hand, Hint, LocalPlanner, Path, PerFinger,
+    Pose, Reached, Reason, Settings, SettingsError, Slot, Target, Task, Vec3, check_count, check_range,
     check_settings,
 };
 use schemars::JsonSchema;
@@ -57,18 +57,20 @@ impl Settings for RollingSettings {
 #[derive(Clone, Debug)]
 pub struct Rolling {
     settings: RollingSettings,
+    levers: Levers,
 }
 
 impl Rolling {
-    /// A planner with these settings, or why they are refused.
-    pub fn new(settings: RollingSettings) -> Result<Self, SettingsError> {
+    /// A planner with these settings for this hand, or why they are refused.
+    pub fn new(settings: RollingSettings, hand: &dyn Hand) -> Result<Self, SettingsError> {
         settings.validate()?;
-        Ok(Self { settings })
+        Ok(Self { settings, levers: Levers::new(hand) })
     }
 
-    fn roller<'a>(&self, task: &'a Task<'a>, from: &Configuration, to: &Pose) -> Roller<'a> {
+    fn roller<'a>(&'a self, task: &'a Task<'a>, from: &Configuration, to: &Pose) -> Roller<'a> {
         Roller {
             task,
+            levers: &self.levers,
             motion: Motion::new(&from.X_HO, to),
             holding: from.holding(),
             radius: task.hand.fingertip_radius(),
@@ -216,6 +218,8 @@ regrasp_api::inventory::submit! {
         ],
         schema: RollingSettings::schema,
         check: check_settings::<RollingSettings>,
-        build: Build::LocalPlanner(|json, _| Ok(Box::new(Rolling::new(RollingSettings::from_json(json)?)?))),
+        build: Build::LocalPlanner(|json, parts| {
+            Ok(Box::new(Rolling::new(RollingSettings::from_json(json)?, parts.hand)?))
+        }),
     }
 }

@@ -1,6 +1,7 @@
 //! One step of rolling: second-order Runge-Kutta, removal of drift, checks of the motion in between.
 
 use super::{constraint::ContactJacobian, motion::Motion};
+use crate::common::Levers;
 use regrasp_api::{
     Configuration, Contact, FingerIndex, FingerJoints, FingerSet, PerFinger, Pose, Reason, Task,
     TipKinematics, Vec3,
@@ -25,6 +26,7 @@ pub(crate) enum Failure {
 /// What stays the same during one transfer.
 pub(crate) struct Roller<'a> {
     pub task: &'a Task<'a>,
+    pub levers: &'a Levers,
     pub motion: Motion,
     pub holding: FingerSet,
     /// Fingertip radius (m).
@@ -89,7 +91,7 @@ impl Roller<'_> {
             let rate = self.speeds(X_HO, &tip, &contact, joints.len()).ok_or(Reason::Reach)?;
             let v_H: Vec3 = (0..rate.len()).map(|j| tip.J_v.column(j) * rate[j]).sum();
             let over_object = (v_H - self.motion.velocity(X_HO, &tip.p_HF)).norm();
-            let of_finger = crate::common::travel(self.task.hand, finger, rate.iter().copied());
+            let of_finger = self.levers.travel(finger, rate.iter().copied());
             part = part.min(reach / over_object).min(travel / of_finger);
             rates[finger] = rate;
         }

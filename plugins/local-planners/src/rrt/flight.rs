@@ -1,11 +1,12 @@
 //! One finger that moves through free space while everything else rests.
 
-use crate::common::{bisection, largest_travel, travel_between};
+use crate::common::{Levers, bisection, largest_travel};
 use regrasp_api::{Configuration, Contact, FingerIndex, FingerJoints, Reason, Task, TipRule, Vec3};
 
 /// What stays the same during one regrasp.
 pub(crate) struct Flight<'a> {
     pub task: &'a Task<'a>,
+    pub levers: &'a Levers,
     pub from: &'a Configuration,
     pub finger: FingerIndex,
     /// Fingertip radius (m).
@@ -13,8 +14,8 @@ pub(crate) struct Flight<'a> {
 }
 
 impl<'a> Flight<'a> {
-    pub fn new(task: &'a Task<'a>, from: &'a Configuration, finger: FingerIndex) -> Self {
-        Self { task, from, finger, radius: task.hand.fingertip_radius() }
+    pub fn new(task: &'a Task<'a>, levers: &'a Levers, from: &'a Configuration, finger: FingerIndex) -> Self {
+        Self { task, levers, from, finger, radius: task.hand.fingertip_radius() }
     }
 
     /// The fingertip's centre (m, in H) at a height (m) above a contact.
@@ -23,12 +24,12 @@ impl<'a> Flight<'a> {
         X_HO.rotation * contact.tip_center(self.radius + height) + X_HO.translation.vector
     }
 
-    /// The distance (m) of the fingertip from the object's surface.
-    pub fn gap(&self, joints: &FingerJoints) -> f64 {
+    /// The distance (m) of the fingertip from the surface, with a contact nearby.
+    pub fn gap(&self, joints: &FingerJoints, near: &Contact) -> f64 {
         let X_HO = &self.from.X_HO;
         let p_HF = self.task.hand.tip_center(self.finger, joints);
         let p_OF = X_HO.rotation.inverse_transform_vector(&(p_HF - X_HO.translation.vector));
-        self.task.surface.project(&p_OF, None).distance - self.radius
+        self.task.surface.project(&p_OF, Some(near.facet)).distance - self.radius
     }
 
     /// Whether the finger keeps clear of everything.
@@ -50,7 +51,7 @@ impl<'a> Flight<'a> {
 
     /// A bound (m) of how far the finger's points travel between two postures.
     pub fn travel(&self, a: &FingerJoints, b: &FingerJoints) -> f64 {
-        travel_between(self.task.hand, self.finger, a, b)
+        self.levers.between(self.finger, a, b)
     }
 
     /// Whether the straight motion of the joints between two free postures is free, looked at every `step` (m) of travel.

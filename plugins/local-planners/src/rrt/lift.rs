@@ -35,7 +35,7 @@ impl Flight<'_> {
             return false;
         }
         let steps = (height / self.task.resolution.regrasp_step).ceil().max(1.0) as usize;
-        let mut rung = Rung { joints: *joints, height: 0.0, gap: self.gap(joints) };
+        let mut rung = Rung { joints: *joints, height: 0.0, gap: self.gap(joints, contact) };
         for step in 1..=steps {
             let to = height * step as f64 / steps as f64;
             match self.climb(contact, rung, to, HALVINGS, postures) {
@@ -56,11 +56,11 @@ impl Flight<'_> {
         postures: &mut Vec<FingerJoints>,
     ) -> Option<Rung> {
         let joints = self.task.hand.inverse(self.finger, &self.center(contact, to), &rung.joints)?;
-        let next = Rung { joints, height: to, gap: self.gap(&joints) };
+        let next = Rung { joints, height: to, gap: self.gap(&joints, contact) };
         if next.gap <= rung.gap {
             return None;
         }
-        if !self.rises(&rung, &next) {
+        if !self.rises(contact, &rung, &next) {
             let halvings = halvings.checked_sub(1)?;
             let middle = self.climb(contact, rung, 0.5 * (rung.height + to), halvings, postures)?;
             return self.climb(contact, middle, to, halvings, postures);
@@ -77,8 +77,8 @@ impl Flight<'_> {
     ///
     /// The gap differs from a straight line by a parabola, to leading order: it rises throughout as long as the parabola's height is
     /// less than a quarter of the difference.
-    fn rises(&self, a: &Rung, b: &Rung) -> bool {
-        let bow = self.gap(&a.joints.interpolate(&b.joints, 0.5)) - 0.5 * (a.gap + b.gap);
+    fn rises(&self, contact: &Contact, a: &Rung, b: &Rung) -> bool {
+        let bow = self.gap(&a.joints.interpolate(&b.joints, 0.5), contact) - 0.5 * (a.gap + b.gap);
         bow.abs() < 0.2 * (b.gap - a.gap)
             && self.travel(&a.joints, &b.joints) <= largest_travel(self.task.resolution)
     }

@@ -5,12 +5,12 @@ mod follow;
 mod lift;
 mod tree;
 
-use crate::common::{refuse, wrong_target};
+use crate::common::{Levers, refuse, wrong_target};
 use flight::Flight;
 use regrasp_api::{
-    Build, CallError, Configuration, Contact, Context, Entry, FingerIndex, FingerJoints, Hint, LocalPlanner,
-    Path, Reached, Reason, Settings, SettingsError, Slot, SurfacePath, Target, Task, TipRule, check_count,
-    check_range, check_settings,
+    Build, CallError, Configuration, Contact, Context, Entry, FingerIndex, FingerJoints, Hand, Hint,
+    LocalPlanner, Path, Reached, Reason, Settings, SettingsError, Slot, SurfacePath, Target, Task, TipRule,
+    check_count, check_range, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -58,6 +58,7 @@ impl Settings for RrtSettings {
 #[derive(Clone, Debug)]
 pub struct Rrt {
     settings: RrtSettings,
+    levers: Levers,
 }
 
 /// Memory that a call uses and leaves to the next one on the same thread.
@@ -85,10 +86,10 @@ struct End<'a> {
 }
 
 impl Rrt {
-    /// A planner with these settings, or why they are refused.
-    pub fn new(settings: RrtSettings) -> Result<Self, SettingsError> {
+    /// A planner with these settings for this hand, or why they are refused.
+    pub fn new(settings: RrtSettings, hand: &dyn Hand) -> Result<Self, SettingsError> {
         settings.validate()?;
-        Ok(Self { settings })
+        Ok(Self { settings, levers: Levers::new(hand) })
     }
 
     /// Fills `scratch.postures` with the finger's motion, without its start; or says what bars it.
@@ -161,7 +162,7 @@ impl LocalPlanner for Rrt {
         }
         let start = End { joints: &from.joints[finger], contact: from.contacts[finger].as_ref() };
         let target = End { joints, contact };
-        let flight = Flight::new(task, from, finger);
+        let flight = Flight::new(task, &self.levers, from, finger);
         if let Some(reason) = unfit(&flight, target, context)? {
             return Ok(refuse(SLOT, reason, from, context));
         }
@@ -234,6 +235,8 @@ regrasp_api::inventory::submit! {
         ],
         schema: RrtSettings::schema,
         check: check_settings::<RrtSettings>,
-        build: Build::LocalPlanner(|json, _| Ok(Box::new(Rrt::new(RrtSettings::from_json(json)?)?))),
+        build: Build::LocalPlanner(|json, parts| {
+            Ok(Box::new(Rrt::new(RrtSettings::from_json(json)?, parts.hand)?))
+        }),
     }
 }
