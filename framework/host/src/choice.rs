@@ -83,9 +83,15 @@ impl Choices {
     pub fn resolve(&self, registry: &Registry) -> Result<Self, HostError> {
         let mut resolved = self.clone();
         for slot in Slot::ALL {
-            resolved.choices[slot as usize] = resolve_choice(registry, slot, self.choice(slot))?;
+            resolved = resolved.resolve_slot(registry, slot)?;
         }
         Ok(resolved)
+    }
+
+    /// The same choices with one slot resolved, as [`Self::resolve`] resolves all.
+    pub fn resolve_slot(mut self, registry: &Registry, slot: Slot) -> Result<Self, HostError> {
+        self.choices[slot as usize] = resolve_choice(registry, slot, self.choice(slot))?;
+        Ok(self)
     }
 }
 

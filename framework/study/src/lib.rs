@@ -1,1 +1,3 @@
-//! Under construction.
+//! Scenario files, and what is done with many of them.
+
+pub mod scenario;

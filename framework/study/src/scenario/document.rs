@@ -1,0 +1,122 @@
+//! A TOML file as plain data that remembers its lines.
+
+use super::{Place, ScenarioError};
+use regrasp_host::{KeyPath, Step, check_schema};
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A parsed file.
+pub struct Document {
+    file: String,
+    text: String,
+    value: Value,
+    /// Where each key path begins (byte offset).
+    offsets: BTreeMap<String, usize>,
+}
+
+impl Document {
+    /// Parses `text`; refuses wrong syntax, and any number that is NaN, infinite or too large.
+    pub fn parse(file: &str, text: &str) -> Result<Self, ScenarioError> {
+        let mut document = Self {
+            file: file.to_owned(),
+            text: text.to_owned(),
+            value: Value::Null,
+            offsets: BTreeMap::new(),
+        };
+        let table = DeTable::parse(text).map_err(|error| document.syntax(&error))?;
+        document.value = document.convert_table(table.get_ref(), &KeyPath::default())?;
+        Ok(document)
+    }
+
+    /// The data as a `T`, after a comparison with its schema, which gives the better messages.
+    pub fn read<T: DeserializeOwned + schemars::JsonSchema>(&self) -> Result<T, ScenarioError> {
+        let schema = schemars::schema_for!(T).to_value();
+        check_schema(&self.value, &schema).map_err(|departure| {
+            let place = self.place(&departure.path);
+            ScenarioError::Form { place, fault: departure.fault }
+        })?;
+        serde_json::from_value(self.value.clone())
+            .map_err(|error| self.refuse(&KeyPath::default(), error.to_string()))
+    }
+
+    /// The place of a key, or of the innermost table around it that the file has.
+    pub fn place(&self, path: &KeyPath) -> Box<Place> {
+        let known = (1..=path.0.len()).rev().map(|n| KeyPath(path.0[..n].to_vec()));
+        let offset = known.into_iter().find_map(|path| self.offsets.get(&path.to_string()));
+        let mut place = self.place_at(offset.copied());
+        place.key = path.to_string();
+        place
+    }
+
+    /// A refusal of the value at `path`.
+    pub fn refuse(&self, path: &KeyPath, message: String) -> ScenarioError {
+        ScenarioError::Value { place: self.place(path), message }
+    }
+
+    fn place_at(&self, offset: Option<usize>) -> Box<Place> {
+        let Some(offset) = offset else { return Place::file(&self.file) };
+        let line = self.text[..offset.min(self.text.len())].matches('\n').count();
+        let excerpt = self.text.lines().nth(line).unwrap_or_default().trim_end();
+        // A line of thousands of characters, as of a mesh, would bury the message.
+        let excerpt = excerpt.chars().take(120).collect();
+        Box::new(Place { file: self.file.clone(), key: String::new(), line: Some(line + 1), excerpt })
+    }
+
+    fn syntax(&self, error: &toml::de::Error) -> ScenarioError {
+        let place = self.place_at(error.span().map(|span| span.start));
+        ScenarioError::Syntax { place, message: error.message().to_owned() }
+    }
+
+    fn convert_table(&mut self, table: &DeTable<'_>, path: &KeyPath) -> Result<Value, ScenarioError> {
+        let mut object = Map::new();
+        for (key, value) in table {
+            let path = path.key(key.get_ref());
+            self.offsets.insert(path.to_string(), key.span().start);
+            object.insert(key.get_ref().to_string(), self.convert(value, &path)?);
+        }
+        Ok(Value::Object(object))
+    }
+
+    fn convert(&mut self, value: &Spanned<DeValue<'_>>, path: &KeyPath) -> Result<Value, ScenarioError> {
+        match value.get_ref() {
+            DeValue::String(text) => Ok(Value::from(text.as_ref())),
+            DeValue::Boolean(yes) => Ok(Value::from(*yes)),
+            DeValue::Datetime(date) => Ok(Value::from(date.to_string())),
+            DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
+                Ok(number) => Ok(Value::from(number)),
+                Err(_) => Err(self.out_of_range(path, number.as_str(), "what 64 bits hold")),
+            },
+            DeValue::Float(number) => match number.as_str().parse::<f64>() {
+                Ok(finite) if finite.is_finite() => Ok(Value::from(finite)),
+                _ => Err(self.out_of_range(path, number.as_str(), "the finite numbers")),
+            },
+            DeValue::Table(table) => self.convert_table(table, path),
+            DeValue::Array(items) => {
+                let convert = |(i, item): (usize, &Spanned<DeValue<'_>>)| {
+                    let path = path.item(i);
+                    self.offsets.insert(path.to_string(), item.span().start);
+                    self.convert(item, &path)
+                };
+                items.iter().enumerate().map(convert).collect()
+            }
+        }
+    }
+
+    fn out_of_range(&self, path: &KeyPath, value: &str, range: &str) -> ScenarioError {
+        ScenarioError::Range { place: self.place(path), value: value.to_owned(), range: range.to_owned() }
+    }
+}
+
+/// Reads a path as it is written in messages: `goal[1].pose`.
+pub fn key_path(text: &str) -> KeyPath {
+    let mut steps = Vec::new();
+    for part in text.split('.') {
+        let mut pieces = part.split(['[', ']']).filter(|piece| !piece.is_empty());
+        steps.extend(pieces.next().map(|key| Step::Key(key.to_owned())));
+        steps.extend(pieces.filter_map(|item| item.parse().ok()).map(Step::Item));
+    }
+    KeyPath(steps)
+}

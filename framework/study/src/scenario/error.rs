@@ -1,0 +1,113 @@
+//! Why a scenario is refused: always with the file and, where there is one, the key, the line and the likely fix.
+
+use regrasp_host::{Fault, HostError, did_you_mean};
+use std::fmt;
+use thiserror::Error;
+
+/// A place in a file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// The file, or the name of a built-in one.
+    pub file: String,
+    /// The path of the key, such as `goal[1].pose.position`; empty for the file as a whole.
+    pub key: String,
+    /// The line, counted from 1.
+    pub line: Option<usize>,
+    /// What the line says.
+    pub excerpt: String,
+}
+
+impl Place {
+    /// A file as a whole.
+    pub fn file(file: &str) -> Box<Self> {
+        Box::new(Self { file: file.to_owned(), ..Self::default() })
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "  --> {}", self.file)?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        if !self.key.is_empty() {
+            write!(f, ", key `{}`", self.key)?;
+        }
+        if let (Some(line), false) = (self.line, self.excerpt.is_empty()) {
+            write!(f, "\n{line:>6} | {}", self.excerpt)?;
+        }
+        Ok(())
+    }
+}
+
+/// A scenario, or something that it names, is refused.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ScenarioError {
+    /// Neither a built-in name nor a file.
+    #[error("there is no built-in {what} `{name}`, and no such file; {}", or_all(.near, .known))]
+    Unknown {
+        /// `scenario` or `hand`.
+        what: &'static str,
+        /// The name that was given.
+        name: String,
+        /// Built-in names that resemble it.
+        near: Vec<String>,
+        /// Every built-in name.
+        known: Vec<String>,
+    },
+    /// A file cannot be read.
+    #[error("cannot read the file: {cause}\n{place}")]
+    Unreadable {
+        /// The file.
+        place: Box<Place>,
+        /// The system's word.
+        cause: String,
+    },
+    /// A file is not TOML.
+    #[error("not valid TOML: {message}\n{place}")]
+    Syntax {
+        /// Where.
+        place: Box<Place>,
+        /// What the parser says.
+        message: String,
+    },
+    /// A key or a type is wrong.
+    #[error("{fault}\n{place}")]
+    Form {
+        /// Where.
+        place: Box<Place>,
+        /// What is wrong.
+        fault: Fault,
+    },
+    /// A number is outside its range, NaN or infinite.
+    #[error("{value} is outside {range}\n{place}")]
+    Range {
+        /// Where.
+        place: Box<Place>,
+        /// The number that was given.
+        value: String,
+        /// The allowed range, with its unit.
+        range: String,
+    },
+    /// A value makes no sense; the text says why.
+    #[error("{message}\n{place}")]
+    Value {
+        /// Where.
+        place: Box<Place>,
+        /// What is wrong, and the likely fix.
+        message: String,
+    },
+    /// A plugin or its settings are refused.
+    #[error("{error}\n{place}")]
+    Plugin {
+        /// Where.
+        place: Box<Place>,
+        /// The registry's word.
+        error: Box<HostError>,
+    },
+}
+
+fn or_all(near: &[String], known: &[String]) -> String {
+    if near.is_empty() { format!("built in are `{}`", known.join("`, `")) } else { did_you_mean(near) }
+}

@@ -1,0 +1,144 @@
+//! The form of a scenario file.
+
+use regrasp_api::{
+    GoalDescription, Limits, ObjectDescription, ObstacleDescription, Slot, StartDescription, Workspace,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+/// A scenario file: a planning problem, where it comes from, and the plugins to solve it with. SI units; angles in degrees where a key
+/// ends with `_deg`.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ScenarioFile {
+    /// What the scenario is called; the file's name where absent.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// What it shows, in one line.
+    #[serde(default)]
+    pub summary: String,
+    /// Where the problem comes from: authors, title, venue, year, and where this file departs from it.
+    #[serde(default)]
+    pub source: String,
+    /// What was published about the problem.
+    #[serde(default)]
+    pub paper: Option<PaperFigures>,
+    /// The hand.
+    pub hand: HandChoice,
+    /// The object that the hand holds.
+    pub object: ObjectDescription,
+    /// Obstacles fixed to the hand's frame.
+    #[serde(default)]
+    pub obstacle: Vec<ObstacleDescription>,
+    /// Acceleration of gravity in the hand's frame (m/s²).
+    #[serde(default = "default_gravity")]
+    pub gravity: [f64; 3],
+    /// Where the object starts.
+    pub start: StartDescription,
+    /// The goals, visited in turn.
+    pub goal: Vec<GoalDescription>,
+    /// Where the object may be sampled; by default a box about start and goals, 15 mm wider on each side.
+    #[serde(default)]
+    pub workspace: Option<Workspace>,
+    /// Tolerances, resolution and budgets.
+    #[serde(default)]
+    pub limits: Limits,
+    /// The plugins that fill the slots; the defaults fill the others.
+    #[serde(default)]
+    pub plugins: PluginTables,
+}
+
+fn default_gravity() -> [f64; 3] {
+    [0.0, 0.0, -9.81]
+}
+
+/// Figures that were published for a problem.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PaperFigures {
+    /// What the publication calls the problem.
+    pub example: String,
+    /// Average time to solve it (s).
+    pub time_s: f64,
+    /// Average number of nodes that were generated.
+    pub generated_nodes: usize,
+    /// Average number of nodes in the graph.
+    pub graph_nodes: usize,
+}
+
+/// The hand: exactly one of the keys.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HandChoice {
+    /// The name of a built-in hand, such as `four-finger`.
+    #[serde(default)]
+    pub builtin: Option<String>,
+    /// A hand file, relative to the scenario file.
+    #[serde(default)]
+    pub file: Option<String>,
+}
+
+/// One table for each slot.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+pub struct PluginTables {
+    /// Slot `contact-model`.
+    pub contact_model: PluginTable,
+    /// Slot `stability-test`.
+    pub stability_test: PluginTable,
+    /// Slot `surface`.
+    pub surface: PluginTable,
+    /// Slot `sampler`.
+    pub sampler: PluginTable,
+    /// The three slots of local planners.
+    pub local_planner: LocalPlannerTables,
+    /// Slot `graph-strategy`.
+    pub graph_strategy: PluginTable,
+}
+
+/// One table for each slot of local planners.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct LocalPlannerTables {
+    /// Slot `local-planner.grasp`.
+    pub grasp: PluginTable,
+    /// Slot `local-planner.transfer`.
+    pub transfer: PluginTable,
+    /// Slot `local-planner.regrasp`.
+    pub regrasp: PluginTable,
+}
+
+/// A plugin and, as further keys, its settings (`regrasp plugins ID` shows them).
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct PluginTable {
+    /// The plugin's id; its role may be left away. Where absent, the settings are for the default plugin.
+    #[serde(rename = "use")]
+    pub id: Option<String>,
+    /// The settings.
+    #[serde(flatten)]
+    pub settings: Map<String, Value>,
+}
+
+impl PluginTables {
+    /// The table of one slot.
+    pub fn table(&self, slot: Slot) -> &PluginTable {
+        match slot {
+            Slot::ContactModel => &self.contact_model,
+            Slot::StabilityTest => &self.stability_test,
+            Slot::Surface => &self.surface,
+            Slot::Sampler => &self.sampler,
+            Slot::GraspPlanner => &self.local_planner.grasp,
+            Slot::TransferPlanner => &self.local_planner.transfer,
+            Slot::RegraspPlanner => &self.local_planner.regrasp,
+            Slot::GraphStrategy => &self.graph_strategy,
+        }
+    }
+}
+
+/// The JSON schema of scenario files, as text for a person or an editor to read.
+pub fn schema() -> String {
+    let schema = schemars::schema_for!(ScenarioFile).to_value();
+    serde_json::to_string_pretty(&schema).expect("a JSON value is JSON")
+}

@@ -1,0 +1,30 @@
+//! The scenarios and hands that are built into the program, so that it works from any folder.
+
+/// A built-in file.
+#[derive(Clone, Copy, Debug)]
+pub struct BuiltIn {
+    /// Its name.
+    pub name: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+macro_rules! built_in {
+    ($folder:literal: $($name:literal),+ $(,)?) => {
+        &[$(BuiltIn { name: $name, text: include_str!(concat!("../../../../scenarios/", $folder, $name, ".toml")) }),+]
+    };
+}
+
+/// The scenarios, the paper's three problems first.
+pub const SCENARIOS: &[BuiltIn] = built_in!(
+    "": "sphere", "cubic", "ellip-obst", "sphere-tilt", "sphere-free", "cube-free", "ellipsoid-free",
+);
+
+/// The hands.
+pub const HANDS: &[BuiltIn] =
+    built_in!("hands/": "four-finger", "five-finger", "three-finger", "free-fingertips");
+
+/// The built-in file with this name.
+pub fn find(files: &'static [BuiltIn], name: &str) -> Option<&'static BuiltIn> {
+    files.iter().find(|file| file.name == name)
+}

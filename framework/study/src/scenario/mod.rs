@@ -1,0 +1,197 @@
+//! Scenario files: from TOML text to a checked problem with its plugins.
+//!
+//! A scenario is a file, or the name of a built-in one. Everything that a file can have wrong is a [`ScenarioError`] with its place; start and
+//! goal grasps alone are left to the planner, which knows stability and collision.
+
+mod check;
+mod document;
+mod embed;
+mod error;
+mod file;
+mod library;
+
+pub use error::*;
+pub use file::*;
+pub use library::*;
+
+use document::{Document, key_path};
+use regrasp_api::{HandDescription, ObjectModel, Problem, Slot};
+use regrasp_host::{Choices, HostError, Registry, Step, near};
+use regrasp_world::{ChainHand, load_object};
+use std::path::{Path, PathBuf};
+
+/// A checked scenario: it stands alone, with no file left to read.
+pub struct Scenario {
+    /// What it is called.
+    pub name: String,
+    /// What it shows, in one line.
+    pub summary: String,
+    /// Where the problem comes from.
+    pub source: String,
+    /// What was published about it.
+    pub paper: Option<PaperFigures>,
+    /// The problem as plain data, meshes inside.
+    pub problem: Problem,
+    /// The problem's hand.
+    pub hand: ChainHand,
+    /// The problem's object.
+    pub object: ObjectModel,
+    /// The plugins; those that the file names or sets have full ids and complete settings.
+    pub choices: Choices,
+    document: Document,
+}
+
+impl Scenario {
+    /// The place of a key in the scenario's file, for errors that are found later.
+    pub fn place(&self, key: &str) -> Box<Place> {
+        self.document.place(&key_path(key))
+    }
+}
+
+/// Loads the built-in scenario of this name, or else the file.
+pub fn load(name: &str, registry: &Registry) -> Result<Scenario, ScenarioError> {
+    if let Some(built_in) = find(SCENARIOS, name) {
+        return from_text(built_in.name, built_in.text, Path::new(""), registry);
+    }
+    let path = Path::new(name);
+    let is_path = path.extension().is_some() || path.components().count() > 1 || path.exists();
+    if !is_path {
+        return Err(unknown("scenario", name, SCENARIOS));
+    }
+    let text = read(path)?;
+    from_text(name, &text, path.parent().unwrap_or(Path::new("")), registry)
+}
+
+/// Reads a scenario from TOML text; `file` is what messages call it, `folder` where the files that it names are looked for.
+pub fn from_text(
+    file: &str,
+    text: &str,
+    folder: &Path,
+    registry: &Registry,
+) -> Result<Scenario, ScenarioError> {
+    let document = Document::parse(file, text)?;
+    let content: ScenarioFile = document.read()?;
+    let choices = choices(&document, &content.plugins, registry)?;
+    let (hand, description) = hand(&document, &content.hand, folder)?;
+    let mut problem = problem(&content, description);
+    check::check_problem(&document, &problem)?;
+    embed::embed_obstacles(&mut problem.obstacle, folder).map_err(|error| refused(&document, &error))?;
+    let object = load_object(&problem.object, folder).map_err(|error| refused(&document, &error))?;
+    check::check_sizes(&document, &hand, &object)?;
+    embed::embed_object(&mut problem.object, &object);
+    Ok(Scenario {
+        name: content.name.clone().unwrap_or_else(|| stem(file)),
+        summary: content.summary,
+        source: content.source,
+        paper: content.paper,
+        problem,
+        hand,
+        object,
+        choices,
+        document,
+    })
+}
+
+fn stem(file: &str) -> String {
+    Path::new(file).file_stem().map_or(file.into(), |stem| stem.to_string_lossy().into_owned())
+}
+
+fn read(path: &Path) -> Result<String, ScenarioError> {
+    let unreadable =
+        |cause: String| ScenarioError::Unreadable { place: Place::file(&path.display().to_string()), cause };
+    let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
+    String::from_utf8(bytes).map_err(|_| unreadable("it is not UTF-8 text".into()))
+}
+
+fn unknown(what: &'static str, name: &str, files: &'static [BuiltIn]) -> ScenarioError {
+    let known: Vec<String> = files.iter().map(|file| file.name.to_owned()).collect();
+    let near = near(name, known.iter().map(String::as_str));
+    ScenarioError::Unknown { what, name: name.to_owned(), near, known }
+}
+
+/// The refusal of something that names its key itself, in backquotes and before anything else: the house's form of messages.
+fn refused(document: &Document, error: &impl ToString) -> ScenarioError {
+    let message = error.to_string();
+    let key = message.split('`').nth(1).unwrap_or_default();
+    document.refuse(&key_path(key), message.clone())
+}
+
+fn problem(content: &ScenarioFile, hand: HandDescription) -> Problem {
+    Problem {
+        hand,
+        object: content.object.clone(),
+        obstacle: content.obstacle.clone(),
+        gravity: content.gravity,
+        start: content.start.clone(),
+        goal: content.goal.clone(),
+        workspace: content.workspace,
+        limits: content.limits,
+    }
+}
+
+/// The hand, built and checked, and its description with all meshes inside.
+fn hand(
+    scenario: &Document,
+    choice: &HandChoice,
+    folder: &Path,
+) -> Result<(ChainHand, HandDescription), ScenarioError> {
+    let (document, folder) = match (&choice.builtin, &choice.file) {
+        (Some(name), None) => {
+            let built_in = find(HANDS, name).ok_or_else(|| unknown("hand", name, HANDS))?;
+            (Document::parse(built_in.name, built_in.text)?, PathBuf::new())
+        }
+        (None, Some(file)) => {
+            let path = folder.join(file);
+            let document = Document::parse(&path.display().to_string(), &read(&path)?)?;
+            (document, path.parent().unwrap_or(Path::new("")).to_owned())
+        }
+        _ => {
+            let message = "give either `builtin` (the name of a built-in hand) or `file`".to_owned();
+            return Err(scenario.refuse(&key_path("hand"), message));
+        }
+    };
+    let mut description: HandDescription = document.read()?;
+    embed::embed_hand(&mut description, &folder).map_err(|error| refused(&document, &error))?;
+    let hand = ChainHand::new(description.clone()).map_err(|error| refused(&document, &error))?;
+    Ok((hand, description))
+}
+
+/// The plugins, each table checked so that an error has its line.
+fn choices(
+    document: &Document,
+    tables: &PluginTables,
+    registry: &Registry,
+) -> Result<Choices, ScenarioError> {
+    let mut choices = Choices::default();
+    for slot in Slot::ALL {
+        let table = tables.table(slot);
+        if table.id.is_none() && table.settings.is_empty() {
+            continue;
+        }
+        if let Some(id) = &table.id {
+            choices.use_plugin(slot, id);
+        }
+        for (key, value) in &table.settings {
+            choices.set(slot, key, value.clone());
+        }
+        choices =
+            choices.resolve_slot(registry, slot).map_err(|error| plugin_error(document, slot, error))?;
+    }
+    Ok(choices)
+}
+
+fn plugin_error(document: &Document, slot: Slot, error: HostError) -> ScenarioError {
+    let mut path = key_path(&format!("plugins.{}", slot.name()));
+    match &error {
+        HostError::Form { departure, .. } => path.0.extend(departure.path.0.iter().cloned()),
+        HostError::Settings { error: regrasp_api::SettingsError::Range { key, .. }, .. } => {
+            path = path.key(key);
+        }
+        HostError::UnknownPlugin { .. } | HostError::WrongSlot { .. } => path.0.push(Step::Key("use".into())),
+        _ => {}
+    }
+    ScenarioError::Plugin { place: document.place(&path), error: Box::new(error) }
+}
+
+#[cfg(test)]
+mod tests;
