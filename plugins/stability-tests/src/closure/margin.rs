@@ -1,0 +1,137 @@
+//! A bracket of the margin Q1: a certified lower bound from the analytic centre, an upper bound from far points of Ω.
+
+use super::newton::Search;
+use super::symmetric::Symmetric6;
+use crate::contacts::{ScaledGrasp, Twist};
+use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
+use regrasp_api::{Vec3, cross_matrix};
+
+/// Newton steps to a centre; quadratic convergence needs about fifteen.
+const CENTRING_STEPS: usize = 200;
+/// Rounds of one ascent; four are usual.
+const ASCENT_ROUNDS: usize = 20;
+
+/// The coordinates that margins are given in, as the map from a grasp's own scaled coordinates.
+pub(crate) struct Frame {
+    map: Matrix6<f64>,
+}
+
+impl Frame {
+    /// Torques about `center_O` (the contacts' centroid if `None`) over `length` (the grasp's own if `None`).
+    pub fn new(grasp: &ScaledGrasp, length: Option<f64>, center_O: Option<Vec3>) -> Self {
+        let shift = center_O.map_or(Vec3::zeros(), |center| (center - grasp.center_O) / grasp.length);
+        let scale = length.map_or(1.0, |length| length / grasp.length);
+        let mut map = Matrix6::identity();
+        // v at the new centre: a' = a + b × shift; ω' = b times the ratio of lengths.
+        map.fixed_view_mut::<3, 3>(0, 3).copy_from(&-cross_matrix(&shift));
+        map.fixed_view_mut::<3, 3>(3, 3).copy_from(&(Matrix3::identity() * scale));
+        Self { map }
+    }
+
+    /// The twist's norm in these coordinates.
+    pub fn norm(&self, w: &Twist) -> f64 {
+        (self.map * Vector6::from(w.to_array())).norm()
+    }
+}
+
+/// Lower and upper bound of Q1 in `frame` for a grasp that is force closure.
+pub(crate) fn bracket(search: &Search<'_>, frame: &Frame) -> (f64, f64) {
+    let Some(centre) = Centre::find(search) else { return (0.0, f64::INFINITY) };
+    let inverse = centre.H.full().cholesky().map(|factor| factor.inverse());
+    let Some(inverse) = inverse else { return (0.0, f64::INFINITY) };
+    let ellipsoid = SymmetricEigen::new(frame.map * inverse * frame.map.transpose());
+    let longest = ellipsoid.eigenvalues.max().max(0.0).sqrt();
+    let lower = 1.0 / (frame.norm(&centre.w) + centre.radius(search) * longest);
+    let mut farthest = 0.0_f64;
+    for axis in ellipsoid.eigenvectors.column_iter() {
+        for sign in [1.0, -1.0] {
+            farthest = farthest.max(ascend(search, frame, &centre.w, axis * sign));
+        }
+    }
+    (lower, 1.0 / farthest)
+}
+
+/// The (nearly) analytic centre of Ω.
+struct Centre {
+    w: Twist,
+    H: Symmetric6,
+    decrement: f64,
+}
+
+impl Centre {
+    fn find(search: &Search<'_>) -> Option<Self> {
+        let mut w = Twist::ZERO;
+        let mut best = None;
+        for _ in 0..CENTRING_STEPS {
+            let here = search.body.at(&w);
+            let (H, g) = search.body.newton_system(&here);
+            let factor = H.factor(0.0);
+            let d = Twist::from_array(factor.solve(g));
+            let decrement = d.dot(&Twist::from_array(g)).max(0.0).sqrt();
+            if decrement < 0.5 {
+                best = Some(Self { w, H, decrement });
+            }
+            if decrement < 1e-7 {
+                break;
+            }
+            w = w.plus(search.body.best_step(&here, &search.body.along(&here, &d), 0.0)?, &d);
+        }
+        best
+    }
+
+    /// How many times the ellipsoid of H around w covers Ω.
+    ///
+    /// Along any line the 2n reciprocal roots λ of Π q_i have Σ λ² = 1 and |Σ λ| ≤ the Newton decrement δ, so one root is at most 1/x away
+    /// with ν(ν-1)x² + 2(ν-1)δx = 1 - δ², ν = 2n: sqrt(2n(2n-1)) at the centre itself.
+    fn radius(&self, search: &Search<'_>) -> f64 {
+        let nu = 2.0 * search.body.grasp.contacts().len() as f64;
+        let (half, delta) = ((nu - 1.0) * self.decrement, self.decrement);
+        let root = (half * half + nu * (nu - 1.0) * (1.0 - delta * delta)).sqrt();
+        (half + root) / (1.0 - delta * delta)
+    }
+}
+
+/// The norm of a local maximum of |w| over Ω: w ← argmax over Ω of <w/|w|, ·> until it stays.
+fn ascend(search: &Search<'_>, frame: &Frame, centre: &Twist, axis: Vector6<f64>) -> f64 {
+    let mut direction = axis;
+    let mut best = 0.0_f64;
+    for _ in 0..ASCENT_ROUNDS {
+        let covector = Twist::from_array((frame.map.transpose() * direction).into());
+        let image = frame.map * Vector6::from(farthest(search, centre, &covector).to_array());
+        let norm = image.norm();
+        let done = norm <= best * (1.0 + 1e-7);
+        best = best.max(norm);
+        if done || norm == 0.0 {
+            break;
+        }
+        direction = image / norm;
+    }
+    best
+}
+
+/// The point of Ω that is farthest along `covector`, from inside, to a relative 1e-8: path following with the same barrier.
+fn farthest(search: &Search<'_>, centre: &Twist, covector: &Twist) -> Twist {
+    let gap = 2.0 * search.body.grasp.contacts().len() as f64;
+    let mut w = *centre;
+    let mut weight = 1.0;
+    for _ in 0..CENTRING_STEPS {
+        let here = search.body.at(&w);
+        let (H, g) = search.body.newton_system(&here);
+        let g = Twist::from_array(g).plus(weight, covector);
+        let d = Twist::from_array(H.factor(0.0).solve(g.to_array()));
+        let along = search.body.along(&here, &d);
+        let Some(t) = search.body.best_step(&here, &along, weight * covector.dot(&d)) else { break };
+        let next = w.plus(t, &d);
+        if search.body.gauge(&next) >= 1.0 {
+            break;
+        }
+        w = next;
+        if d.dot(&g) < 0.5 {
+            if gap < 1e-8 * weight * covector.dot(&w) {
+                break;
+            }
+            weight *= 10.0;
+        }
+    }
+    w
+}

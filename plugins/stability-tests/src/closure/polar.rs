@@ -1,0 +1,200 @@
+//! The polar body Ω = {w : h_i(-w) ≤ 1 for all i} and its barrier -Σ log q_i.
+//!
+//! With v = a + b×r, s0 = 1 + v_n and β = b·n the body is s0 ≥ sqrt(μ²|v_t|² + γ²β²) at every contact, and q = s0² - μ²|v_t|² - γ²β²
+//! is quadratic along every line. Ω is bounded exactly where the grasp is force closure.
+
+use super::symmetric::Symmetric6;
+use crate::contacts::{ScaledContact, ScaledGrasp, Twist};
+use regrasp_api::{MAX_FINGERS, Vec3};
+
+/// What a contact sees of a twist: its normal, tangential and spinning part, and the barrier's argument.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Local {
+    /// s0 at a point, the normal part of the velocity along a direction.
+    pub s0: f64,
+    /// Tangential part of the velocity at the contact.
+    pub v_t: Vec3,
+    /// Spin about the normal.
+    pub beta: f64,
+    /// q at a point; q' along a direction.
+    pub q: f64,
+    /// q'' / 2 along a direction.
+    pub curvature: f64,
+}
+
+impl Local {
+    const ZERO: Self = Self { s0: 0.0, v_t: Vec3::new(0.0, 0.0, 0.0), beta: 0.0, q: 0.0, curvature: 0.0 };
+
+    #[inline]
+    fn velocity(contact: &ScaledContact, w: &Twist) -> Self {
+        let v = w.a + w.b.cross(&contact.r);
+        let s0 = v.dot(&contact.n);
+        Self { s0, v_t: v - contact.n * s0, beta: w.b.dot(&contact.n), q: 0.0, curvature: 0.0 }
+    }
+
+    /// The bilinear form of q between two: `s0 s0' - μ² v_t·v_t' - γ² β β'`.
+    #[inline]
+    fn form(&self, contact: &ScaledContact, other: &Self) -> f64 {
+        let (mu2, gamma2) = (contact.mu * contact.mu, contact.gamma * contact.gamma);
+        self.s0 * other.s0 - mu2 * self.v_t.dot(&other.v_t) - gamma2 * (self.beta * other.beta)
+    }
+}
+
+/// One value of [`Local`] for each contact.
+pub(crate) type Locals = [Local; MAX_FINGERS];
+
+/// The polar body of a grasp.
+#[derive(Clone, Copy)]
+pub(crate) struct PolarBody<'a> {
+    pub grasp: &'a ScaledGrasp,
+}
+
+impl PolarBody<'_> {
+    /// What the contacts see of the point `w`.
+    #[inline]
+    pub fn at(&self, w: &Twist) -> Locals {
+        let mut locals = [Local::ZERO; MAX_FINGERS];
+        for (local, contact) in locals.iter_mut().zip(self.grasp.contacts()) {
+            *local = Local::velocity(contact, w);
+            local.s0 += 1.0;
+            local.q = local.form(contact, local);
+        }
+        locals
+    }
+
+    /// What the contacts see of a move along `d` from the point whose locals are `here`.
+    #[inline]
+    pub fn along(&self, here: &Locals, d: &Twist) -> Locals {
+        let mut locals = [Local::ZERO; MAX_FINGERS];
+        for ((local, here), contact) in locals.iter_mut().zip(here).zip(self.grasp.contacts()) {
+            *local = Local::velocity(contact, d);
+            local.q = 2.0 * here.form(contact, local);
+            local.curvature = local.form(contact, local);
+        }
+        locals
+    }
+
+    /// Hessian H of the barrier and *minus* its gradient g at the point whose locals are `here`; Newton's step solves H d = g.
+    #[inline]
+    pub fn newton_system(&self, here: &Locals) -> (Symmetric6, [f64; 6]) {
+        let mut H = Symmetric6::zeros();
+        let mut g = [0.0; 6];
+        for (local, contact) in here.iter().zip(self.grasp.contacts()) {
+            let (mu2, gamma2) = (contact.mu * contact.mu, contact.gamma * contact.gamma);
+            let scale = 2.0 / local.q;
+            let phi = (contact.n * local.s0 - local.v_t * mu2) * scale;
+            let moment = contact.r.cross(&phi) - contact.n * (scale * gamma2 * local.beta);
+            let z = Twist { a: phi, b: moment }.to_array();
+            H.add_outer(1.0, &z);
+            H.add_outer(-scale * (1.0 + mu2), &normal_wrench(contact));
+            H.add_velocity(scale * mu2, &contact.r);
+            if gamma2 > 0.0 {
+                H.add_spin(scale * gamma2, &contact.n);
+            }
+            g.iter_mut().zip(z).for_each(|(g, z)| *g += z);
+        }
+        (H, g)
+    }
+
+    /// M = G Gᵀ with the columns of the grasp map scaled by 1, μ, μ, γ, and the sum of the normal wrenches.
+    ///
+    /// At w = 0 the barrier's Hessian is 2M and minus its gradient twice that sum.
+    #[inline]
+    pub fn grasp_map_square(&self) -> (Symmetric6, [f64; 6]) {
+        let mut M = Symmetric6::zeros();
+        let mut sum = [0.0; 6];
+        for contact in self.grasp.contacts() {
+            let g0 = normal_wrench(contact);
+            Self::add_contact(&mut M, contact, &g0);
+            sum.iter_mut().zip(g0).for_each(|(sum, g0)| *sum += g0);
+        }
+        (M, sum)
+    }
+
+    /// Adds the contact's part of M.
+    #[inline]
+    fn add_contact(M: &mut Symmetric6, contact: &ScaledContact, g0: &[f64; 6]) {
+        let (mu2, gamma2) = (contact.mu * contact.mu, contact.gamma * contact.gamma);
+        M.add_outer(1.0 - mu2, g0);
+        M.add_velocity(mu2, &contact.r);
+        if gamma2 > 0.0 {
+            M.add_spin(gamma2, &contact.n);
+        }
+    }
+
+    /// The part of M that belongs to the contacts which feel at most `bound` of `w`: |(v_n, μ v_t, γ β)| ≤ bound.
+    pub fn felt_square(&self, w: &Twist, bound: f64) -> Symmetric6 {
+        let mut M = Symmetric6::zeros();
+        for contact in self.grasp.contacts() {
+            let seen = Local::velocity(contact, w);
+            let tangential = (contact.mu * contact.mu) * seen.v_t.norm_squared();
+            let spin = (contact.gamma * seen.beta).powi(2);
+            if seen.s0 * seen.s0 + tangential + spin <= bound * bound {
+                Self::add_contact(&mut M, contact, &normal_wrench(contact));
+            }
+        }
+        M
+    }
+
+    /// Whether no contact resists the move `d`, to rounding: h_i(-d) ≤ 1e-12 |d| for all i, d ≠ 0.
+    pub fn separates(&self, d: &Twist) -> bool {
+        let bound = 1e-12 * d.norm();
+        let back = d.scaled(-1.0);
+        bound > 0.0 && self.grasp.contacts().iter().all(|contact| contact.support(&back) <= bound)
+    }
+
+    /// The largest support max h_i(-w): w is in Ω where it is at most 1.
+    pub fn gauge(&self, w: &Twist) -> f64 {
+        let back = w.scaled(-1.0);
+        self.grasp.contacts().iter().map(|contact| contact.support(&back)).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The step t > 0 that maximises `slope t + Σ log q_i(w + t d)`; `None` where the line never leaves Ω.
+    ///
+    /// Each q_i is quadratic in t, so no evaluation costs more than a few products. Newton in one dimension, kept inside the body.
+    #[inline]
+    pub fn best_step(&self, here: &Locals, along: &Locals, slope: f64) -> Option<f64> {
+        let count = self.grasp.contacts().len();
+        let lines = || here[..count].iter().zip(&along[..count]);
+        let end = lines()
+            .map(|(here, along)| first_root(here.q, along.q, along.curvature))
+            .fold(f64::INFINITY, f64::min);
+        if end == f64::INFINITY {
+            return None;
+        }
+        let mut t = (0.5 * end).min(1.0);
+        for _ in 0..LINE_STEPS {
+            let (mut first, mut second) = (slope, 0.0);
+            for (here, along) in lines() {
+                let inverse = 1.0 / (here.q + t * (along.q + t * along.curvature));
+                let rate = (along.q + 2.0 * t * along.curvature) * inverse;
+                first += rate;
+                second += rate * rate - 2.0 * along.curvature * inverse;
+            }
+            let next = t + first / second;
+            let next = if next >= end { 0.5 * (t + end) } else { next.max(0.5 * t) };
+            let done = (next - t).abs() <= 0.05 * t;
+            t = next;
+            if done {
+                break;
+            }
+        }
+        Some(t)
+    }
+}
+
+/// Steps of the line search: near a face of Ω each halves the distance to it, and more precision is not needed.
+const LINE_STEPS: usize = 8;
+
+/// (n, r×n): the wrench of a unit normal force.
+#[inline]
+fn normal_wrench(contact: &ScaledContact) -> [f64; 6] {
+    Twist { a: contact.n, b: contact.r.cross(&contact.n) }.to_array()
+}
+
+/// The smallest positive root of q + t q' + t² c, for q > 0; infinite where there is none.
+#[inline]
+fn first_root(q: f64, slope: f64, c: f64) -> f64 {
+    let root = (slope * slope - 4.0 * c * q).max(0.0).sqrt();
+    if root > slope { 2.0 * q / (root - slope) } else { f64::INFINITY }
+}

@@ -1,0 +1,204 @@
+//! `stability-test/force-closure`: exact force closure with elliptic cones.
+
+use crate::closure::{Frame, Outcome, Search, bracket, three_points};
+use crate::contacts::{ScaledGrasp, Twist};
+use regrasp_api::{
+    Assessment, Build, CallError, Certificate, Context, Entry, FingerIndex, Grasp, Hint, Settings,
+    SettingsError, Slot, Stability, StabilityTest, Vec3, check_range, check_settings,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+const ID: &str = "stability-test/force-closure";
+/// Hint: the values are a point of Ω where the last search ended with "closed".
+const INTERIOR_POINT: u64 = 1;
+/// Hint: the values are a twist that separated the last grasp.
+const SEPARATING_TWIST: u64 = 2;
+
+/// Settings of [`ForceClosure`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ForceClosureSettings {
+    /// Margins (Q1, no unit) up to this one may be left undecided, which counts as not stable; 1e-7 to 1e-3, default 1e-6.
+    ///
+    /// Below 1e-7 rounding decides. A grasp with a larger margin is never refused.
+    #[schemars(range(min = 1e-7, max = 1e-3))]
+    pub undecided_margin: f64,
+}
+
+impl Default for ForceClosureSettings {
+    fn default() -> Self {
+        Self { undecided_margin: 1e-6 }
+    }
+}
+
+impl Settings for ForceClosureSettings {
+    fn validate(&self) -> Result<(), SettingsError> {
+        check_range("undecided_margin", self.undecided_margin, 1e-7, 1e-3)
+    }
+}
+
+/// Force closure, decided exactly for point contacts with and without friction and for soft fingers, with no linearised cone.
+///
+/// A grasp is force closure where internal forces exist strictly inside every cone and the grasp map has rank 6. That is so exactly where
+/// the polar body Ω = {w : h_i(-w) ≤ 1} of the contacts' wrench sets is bounded, h_i the support function of contact i's cone at unit
+/// normal force. Newton's method towards the analytic centre of Ω ends with one of two proofs: multipliers that are such a force, or a
+/// twist that no contact resists. Three point contacts with friction are decided in closed form.
+///
+/// The margin is Q1 = min over unit twists of max_i h_i (Ferrari & Canny's with the sum of the normal forces as bound), torques taken about
+/// the contacts' centroid over the largest distance from it unless the caller fixes both. Verdicts do not depend on that choice, except
+/// that a margin up to `undecided_margin` may give [`Stability::Undecided`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceClosure {
+    tau: f64,
+}
+
+impl ForceClosure {
+    /// The test with checked settings.
+    pub fn new(settings: ForceClosureSettings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        Ok(Self { tau: settings.undecided_margin })
+    }
+
+    fn decide(&self, grasp: &ScaledGrasp, hint: &mut Hint) -> Stability {
+        // Balance alone takes six independent components.
+        if grasp.components() <= 6 {
+            return Stability::Unstable;
+        }
+        if let Some(closed) = three_points(grasp) {
+            return if closed { Stability::Stable } else { Stability::Unstable };
+        }
+        let search = Search::new(grasp, self.tau);
+        recall(&search, hint).unwrap_or_else(|| remember(search.run(), hint))
+    }
+
+    fn certify(&self, grasp: &ScaledGrasp, frame: &Frame, stability: Stability) -> (f64, f64, Certificate) {
+        let search = Search::new(grasp, self.tau);
+        match (stability, search.run()) {
+            (Stability::Stable, Outcome::Closed(w)) => {
+                let (lower, upper) = bracket(&search, frame);
+                (lower, upper, internal_force(&search, &w))
+            }
+            (Stability::Unstable, Outcome::Separated(d)) => (0.0, 0.0, separating_twist(grasp, &d)),
+            (Stability::Undecided, Outcome::Undecided(w)) => (0.0, 1.0 / frame.norm(&w), Certificate::None),
+            (Stability::Unstable, _) => (0.0, 0.0, Certificate::None),
+            _ => (0.0, f64::INFINITY, Certificate::None),
+        }
+    }
+}
+
+impl StabilityTest for ForceClosure {
+    fn test(
+        &self,
+        grasp: &Grasp<'_>,
+        hint: &mut Hint,
+        _context: &mut Context<'_>,
+    ) -> Result<Stability, CallError> {
+        Ok(self.decide(&ScaledGrasp::gather(grasp, None, ID)?, hint))
+    }
+
+    fn assess(
+        &self,
+        grasp: &Grasp<'_>,
+        length: Option<f64>,
+        center_O: Option<Vec3>,
+        _context: &mut Context<'_>,
+    ) -> Result<Assessment, CallError> {
+        let scaled = ScaledGrasp::gather(grasp, None, ID)?;
+        let stability = self.decide(&scaled, &mut Hint::default());
+        let frame = Frame::new(&scaled, length, center_O);
+        let (margin_lower, margin_upper, certificate) = self.certify(&scaled, &frame, stability);
+        Ok(Assessment { stability, margin_lower, margin_upper, certificate })
+    }
+
+    fn stable_without(
+        &self,
+        grasp: &Grasp<'_>,
+        finger: FingerIndex,
+        _context: &mut Context<'_>,
+    ) -> Result<bool, CallError> {
+        let rest = ScaledGrasp::gather(grasp, Some(finger), ID)?;
+        Ok(self.decide(&rest, &mut Hint::default()).is_stable())
+    }
+}
+
+/// The verdict that the hint proves, if it proves one beyond doubt.
+fn recall(search: &Search<'_>, hint: &Hint) -> Option<Stability> {
+    if hint.tag == 0 {
+        return None;
+    }
+    let [a, b, c, d, e, f, ..] = hint.values;
+    let twist = Twist::from_array([a, b, c, d, e, f]);
+    match hint.tag {
+        INTERIOR_POINT => search.closed_from(&twist).then_some(Stability::Stable),
+        SEPARATING_TWIST => search.separated_by(&twist).then_some(Stability::Unstable),
+        _ => None,
+    }
+}
+
+/// The verdict of an outcome, its proof kept for the next grasp.
+fn remember(outcome: Outcome, hint: &mut Hint) -> Stability {
+    let (stability, tag, twist) = match outcome {
+        // From w = 0 a search starts anyway, and with less work.
+        Outcome::Closed(w) if w == Twist::ZERO => (Stability::Stable, 0, w),
+        Outcome::Closed(w) => (Stability::Stable, INTERIOR_POINT, w),
+        Outcome::Separated(d) => (Stability::Unstable, SEPARATING_TWIST, d),
+        Outcome::Undecided(_) => (Stability::Undecided, 0, Twist::ZERO),
+    };
+    let [a, b, c, d, e, f] = twist.to_array();
+    *hint = Hint { tag, values: [a, b, c, d, e, f, 0.0, 0.0] };
+    stability
+}
+
+/// The internal force as a certificate, the normal forces adding up to 1 N.
+fn internal_force(search: &Search<'_>, w: &Twist) -> Certificate {
+    let grasp = search.body.grasp;
+    let forces = search.forces(w);
+    let scale = 1.0 / forces.normal_sum;
+    let each = &forces.each[..grasp.contacts().len()];
+    Certificate::InternalForce {
+        forces_O: each.iter().map(|(f, _)| f * scale).collect(),
+        torsions: each.iter().map(|(_, m)| m * scale * grasp.length).collect(),
+    }
+}
+
+/// The twist as a certificate, of unit norm in scaled coordinates.
+fn separating_twist(grasp: &ScaledGrasp, d: &Twist) -> Certificate {
+    let unit = d.scaled(1.0 / d.norm());
+    Certificate::SeparatingTwist { v_O: unit.a, w_O: unit.b / grasp.length }
+}
+
+regrasp_api::inventory::submit! {
+    Entry {
+        id: ID,
+        slots: &[Slot::StabilityTest],
+        summary: "Exact force closure with round cones, by Newton's method on the polar body; margin Q1 and a certificate.",
+        references: &[
+            "Ferrari, Canny, Planning optimal grasps, ICRA 1992",
+            "Nguyen, Constructing force-closure grasps, IJRR 1988",
+            "Han, Trinkle, Li, Grasp analysis as linear matrix inequality problems, T-RA 2000",
+            "Boyd, Wegbreit, Fast computation of optimal contact forces, T-RO 2007",
+            "Zheng, Chew, Distance between a point and a convex cone in n-dimensional space: computation and applications, T-RO 2009",
+        ],
+        schema: ForceClosureSettings::schema,
+        check: check_settings::<ForceClosureSettings>,
+        build: Build::StabilityTest(|json, _| {
+            Ok(Box::new(ForceClosure::new(ForceClosureSettings::from_json(json)?)?))
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_outside_their_range_are_refused() {
+        for undecided_margin in [0.0, 9e-8, 2e-3, f64::NAN] {
+            let error = ForceClosure::new(ForceClosureSettings { undecided_margin }).unwrap_err();
+            assert!(error.to_string().contains("undecided_margin"), "{error}");
+        }
+        assert!(ForceClosureSettings::from_json(r#"{"tau": 1e-6}"#).is_err());
+        assert_eq!(ForceClosureSettings::from_json("").unwrap(), ForceClosureSettings::default());
+    }
+}
