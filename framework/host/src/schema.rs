@@ -99,7 +99,11 @@ pub enum Fault {
 }
 
 fn suggestion(near: &[String], known: &[String]) -> String {
-    if near.is_empty() { format!("known are `{}`", known.join("`, `")) } else { did_you_mean(near) }
+    match (near, known) {
+        ([], []) => "there are none here".to_owned(),
+        ([], known) => format!("known are `{}`", known.join("`, `")),
+        (near, _) => did_you_mean(near),
+    }
 }
 
 /// The first place where data depart from a schema.
@@ -157,14 +161,14 @@ impl<'a> Walk<'a> {
         schema: &'a Value,
         path: &KeyPath,
     ) -> Result<(), Departure> {
-        let Some(properties) = schema.get("properties").and_then(Value::as_object) else {
-            return Ok(());
-        };
+        // A struct without fields has no `properties` at all.
+        let none = Map::new();
+        let properties = schema.get("properties").and_then(Value::as_object);
         let closed = schema.get("additionalProperties") == Some(&Value::Bool(false));
         for (key, value) in object {
-            match properties.get(key) {
+            match properties.and_then(|properties| properties.get(key)) {
                 Some(property) => self.check(value, property, &path.key(key))?,
-                None if closed => return Err(unknown_key(key, properties, path)),
+                None if closed => return Err(unknown_key(key, properties.unwrap_or(&none), path)),
                 None => {}
             }
         }
@@ -359,6 +363,12 @@ mod tests {
         assert!(
             refusal::<ObjectDescription>(ball).contains("`shape.radios`: unknown key; did you mean `radius`")
         );
+    }
+
+    #[test]
+    fn a_struct_without_fields_has_no_keys() {
+        let text = refusal::<regrasp_api::NoSettings>(json!({"edges": 3}));
+        assert_eq!(text, "`edges`: unknown key; there are none here");
     }
 
     #[test]
