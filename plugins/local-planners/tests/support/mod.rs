@@ -58,20 +58,20 @@ impl StabilityTest for Glue {
 pub struct Anything;
 
 impl Admissible for Anything {
-    fn admit(
-        &self,
-        _: &Task<'_>,
-        _: &Configuration,
-        _: &mut Context<'_>,
-    ) -> Result<Option<Reason>, CallError> {
-        Ok(None)
-    }
     fn admit_finger(
         &self,
         _: &Task<'_>,
         _: &Configuration,
         _: FingerIndex,
         _: FingerSet,
+        _: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError> {
+        Ok(None)
+    }
+    fn admit_grasp(
+        &self,
+        _: &Task<'_>,
+        _: &Configuration,
         _: &mut Context<'_>,
     ) -> Result<Option<Reason>, CallError> {
         Ok(None)
@@ -218,4 +218,62 @@ pub fn nearby(X_HO: &Pose, random: &mut Random, distance: f64, angle: f64) -> Po
     let turn = Rotation::from_scaled_axis(random.direction() * random.range(0.2 * angle, angle));
     let p = X_HO.translation.vector + random.direction() * random.range(0.0, distance);
     Pose::from_parts(p.into(), turn * X_HO.rotation)
+}
+
+/// Fingertips' balls against the object and each other, by brute force; no links, no palm.
+pub struct Tips {
+    hand: ChainHand,
+    mesh: Mesh,
+    clearance: f64,
+}
+
+impl Tips {
+    pub fn new(bench: &Bench) -> Self {
+        Self {
+            hand: bench.hand.clone(),
+            mesh: bench.object.mesh.clone(),
+            clearance: bench.resolution.clearance,
+        }
+    }
+}
+
+impl Clearance for Tips {
+    fn object_free(&self, _: &Pose) -> Result<(), BodyPair> {
+        Ok(())
+    }
+    fn finger_free(
+        &self,
+        finger: FingerIndex,
+        joints: &FingerJoints,
+        X_HO: &Pose,
+        tip: TipRule,
+    ) -> Result<(), BodyPair> {
+        let TipRule::Clear(clear) = tip else { return Ok(()) };
+        let p_OF = geometry::to_object(X_HO, &self.hand.tip_center(finger, joints));
+        let gap = (geometry::closest(&self.mesh, &p_OF) - p_OF).norm() - self.hand.fingertip_radius();
+        if gap >= clear { Ok(()) } else { Err((Body::Object, Body::Fingertip(finger))) }
+    }
+    fn fingers_free(
+        &self,
+        a: (FingerIndex, &FingerJoints),
+        b: (FingerIndex, &FingerJoints),
+    ) -> Result<(), BodyPair> {
+        let apart = self.hand.tip_center(a.0, a.1) - self.hand.tip_center(b.0, b.1);
+        let close = apart.norm() < 2.0 * self.hand.fingertip_radius() + self.clearance;
+        if close { Err((Body::Fingertip(a.0), Body::Fingertip(b.0))) } else { Ok(()) }
+    }
+    fn configuration_free(&self, q: &Configuration, _: FingerSet, _: bool) -> Result<(), BodyPair> {
+        for (finger, joints) in q.joints.iter() {
+            if q.contacts[finger].is_none() {
+                self.finger_free(finger, joints, &q.X_HO, TipRule::Clear(self.clearance))?;
+            }
+            for (other, theirs) in q.joints.iter().skip(finger.index() + 1) {
+                self.fingers_free((finger, joints), (other, theirs))?;
+            }
+        }
+        Ok(())
+    }
+    fn distances(&self, _: &Configuration, _: f64) -> Vec<PairDistance> {
+        Vec::new()
+    }
 }
