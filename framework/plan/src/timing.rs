@@ -177,13 +177,22 @@ impl Steps {
     /// The highest rates that keep every limit, up to the last sweep's tolerance.
     fn rates(&self, bounds: &JointBounds) -> Vec<f64> {
         let mut rates = self.caps.clone();
+        // What a step allows its neighbour changes only when its own rate does: the sweeps visit nothing else.
+        let mut stale = vec![[true; 2]; rates.len()];
         for _ in 0..MOST_SWEEPS {
+            let forward = (1..rates.len()).map(|k| (k, k - 1, 0));
+            let backward = (1..rates.len()).rev().map(|k| (k - 1, k, 1));
             let mut lowered = false;
-            for k in 1..rates.len() {
-                lowered |= self.lower(&mut rates, k, k - 1, bounds);
-            }
-            for k in (1..rates.len()).rev() {
-                lowered |= self.lower(&mut rates, k - 1, k, bounds);
+            for (k, by, side) in forward.chain(backward) {
+                if std::mem::take(&mut stale[k][side]) && self.lower(&mut rates, k, by, bounds) {
+                    lowered = true;
+                    if let Some(next) = stale.get_mut(k + 1) {
+                        next[0] = true;
+                    }
+                    if k > 0 {
+                        stale[k - 1][1] = true;
+                    }
+                }
             }
             if !lowered {
                 break;
@@ -206,8 +215,12 @@ impl Steps {
                 continue; // A reversal is in the caps.
             }
             let (d, e) = (d.abs(), e.abs());
-            let w = (a / (2.0 * e)).sqrt().max(rates[by]).min(self.caps[by]);
+            let falling = 2.0 * e * rates[by] * rates[by] < a;
+            let w = if falling { (a / (2.0 * e)).sqrt().min(self.caps[by]) } else { rates[by] };
             let phi = e * w + a / (2.0 * w);
+            if d * rate <= phi + a / (2.0 * rate) {
+                continue; // The limit holds; the root is not needed.
+            }
             rate = rate.min((phi + (phi * phi + 2.0 * d * a).sqrt()) / (2.0 * d));
         }
         let lowered = rate < rates[k] * (1.0 - 1e-9);
