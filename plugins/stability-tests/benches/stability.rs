@@ -13,7 +13,7 @@ const SET: usize = 512;
 
 /// Contacts on an ellipsoid, as a planner meets them.
 fn grasp(random: &mut Random, count: u8, mu: f64, gamma: f64) -> Grasp<'static> {
-    let semi_axes = Vec3::new(0.04, 0.025, 0.025);
+    let semi_axes = Vec3::new(0.04, 0.025, 0.03);
     let mut grasp = Grasp::new(Vec3::zeros());
     for finger in (0..count).map(FingerIndex) {
         let u = random.direction();

@@ -77,6 +77,9 @@ impl ScaledContact {
     }
 }
 
+/// Contacts closer together than this share of their distance from O's origin are one point: their differences are rounding.
+const COINCIDENT: f64 = 1e-9;
+
 /// The contacts of a grasp about their centroid c, lengths divided by L = max |p - c|.
 ///
 /// Always centred: with a reference point 100 L away rounding alone makes false answers.
@@ -132,19 +135,19 @@ impl ScaledGrasp {
     fn normalise(&mut self) {
         let contacts = &mut self.contacts[..self.count];
         let center = contacts.iter().map(|contact| contact.r).sum::<Vec3>() / contacts.len().max(1) as f64;
-        let mut square = 0.0_f64;
+        let (mut square, mut reach) = (0.0_f64, 0.0_f64);
         for contact in contacts.iter_mut() {
+            reach = reach.max(contact.r.norm_squared());
             contact.r -= center;
             square = square.max(contact.r.norm_squared());
         }
         self.center_O = center;
-        if square > 0.0 {
-            self.length = square.sqrt();
-            let scale = 1.0 / self.length;
-            for contact in contacts {
-                contact.r *= scale;
-                contact.gamma *= scale;
-            }
+        let coincide = square <= reach * COINCIDENT * COINCIDENT;
+        self.length = if coincide { 1.0 } else { square.sqrt() };
+        let scale = 1.0 / self.length;
+        for contact in contacts {
+            contact.r = if coincide { Vec3::zeros() } else { contact.r * scale };
+            contact.gamma *= scale;
         }
     }
 }

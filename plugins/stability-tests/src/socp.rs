@@ -189,18 +189,36 @@ fn solve(grasp: &ScaledGrasp, grasp_map: &DMatrix<f64>) -> Result<Solution, Call
     optimum(&compressed(&A), &b, &cost, &cones)
 }
 
+/// The optimum to the precision that the sign of t needs, or, on a degenerate grasp, to the solver's usual one.
 fn optimum(
     A: &CscMatrix<f64>,
     b: &[f64],
     cost: &[f64],
     cones: &[SupportedConeT<f64>],
 ) -> Result<Solution, CallError> {
+    for tolerance in [1e-11, 1e-8] {
+        if let Some(solution) = attempt(A, b, cost, cones, tolerance)? {
+            return Ok(solution);
+        }
+    }
+    let forces = DVector::zeros(cost.len() - 1);
+    Ok(Solution { t: 0.0, doubt: f64::INFINITY, forces, twist: Twist::ZERO })
+}
+
+fn attempt(
+    A: &CscMatrix<f64>,
+    b: &[f64],
+    cost: &[f64],
+    cones: &[SupportedConeT<f64>],
+    tolerance: f64,
+) -> Result<Option<Solution>, CallError> {
     let failed = |reason: String| CallError::Contract { plugin: ID.to_owned(), reason };
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
-        .tol_gap_abs(1e-11)
-        .tol_gap_rel(1e-11)
-        .tol_feas(1e-11)
+        .max_threads(1)
+        .tol_gap_abs(tolerance)
+        .tol_gap_rel(tolerance)
+        .tol_feas(tolerance)
         .build()
         .map_err(|error| failed(error.to_string()))?;
     let P = CscMatrix::zeros((cost.len(), cost.len()));
@@ -208,20 +226,20 @@ fn optimum(
         DefaultSolver::new(&P, cost, A, b, cones, settings).map_err(|e| failed(e.to_string()))?;
     solver.solve();
     let found = &solver.solution;
-    let doubt = match found.status {
-        SolverStatus::Solved => 0.0,
-        // Asked for more than double precision has on a degenerate grasp: the answer counts as far as its gap and residuals allow.
+    let (&t, forces) = found.x.split_last().expect("the program has t as its last variable");
+    let (t, doubt) = match found.status {
+        SolverStatus::Solved => (t, 0.0),
+        // Asked for more than double precision has: the answer counts as far as its gap and residuals allow.
         SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress | SolverStatus::MaxIterations => {
-            (found.obj_val - found.obj_val_dual).abs() + found.r_prim.abs() + found.r_dual.abs()
+            (t, (found.obj_val - found.obj_val_dual).abs() + found.r_prim.abs() + found.r_dual.abs())
         }
         // No force at all balances with normal parts that add up to 1.
-        SolverStatus::PrimalInfeasible => f64::NEG_INFINITY,
-        status => return Err(failed(format!("the conic solver ended with {status:?}"))),
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => (f64::NEG_INFINITY, 0.0),
+        _ => return Ok(None),
     };
-    let (t, forces) = found.x.split_last().expect("the program has t as its last variable");
     let twist = Twist::from_array(std::array::from_fn(|i| found.z[i]));
-    let t = if doubt == f64::NEG_INFINITY { doubt } else { *t };
-    Ok(Solution { t, doubt: doubt.max(0.0), forces: DVector::from_column_slice(forces), twist })
+    let usable = !t.is_nan() && !doubt.is_nan();
+    Ok(usable.then(|| Solution { t, doubt, forces: DVector::from_column_slice(forces), twist }))
 }
 
 fn compressed(dense: &DMatrix<f64>) -> CscMatrix<f64> {

@@ -1,7 +1,7 @@
 //! Newton's method to the analytic centre of the polar body, stopped as soon as a proof either way is at hand.
 
 use super::polar::{Local, Locals, PolarBody};
-use super::symmetric::Factor;
+use super::symmetric::{Factor, Symmetric6};
 use crate::contacts::{ScaledContact, ScaledGrasp, Twist};
 use regrasp_api::{MAX_FINGERS, Vec3};
 
@@ -12,6 +12,8 @@ const SLACK: f64 = 1e-9;
 /// A hint's claim counts only where it holds with this margin, so that a search without the hint must come to the same verdict.
 const COMFORT: f64 = 1e-3;
 
+/// Smallest pivot of the scaled grasp map's square at which its rank is beyond doubt, and so is a solution to rounding.
+const SOUND: f64 = 1e-5;
 /// Distance from w = 0 at which a separating twist of the second kind ([`Search::rounded`]) is first looked for ...
 const FIRST_LOOK: f64 = 10.0;
 /// ... and by how much farther for another look.
@@ -64,22 +66,27 @@ impl<'a> Search<'a> {
     pub fn run(&self) -> Outcome {
         let (M, sum) = self.body.grasp_map_square();
         let factor = M.factor(0.5 * self.tau * self.tau);
-        let mut thin = None;
-        if let Some(u) = factor.weak_direction() {
-            match self.look_along(&u) {
-                Outcome::Undecided(far) => thin = Some(far),
+        let sound = factor.smallest >= SOUND;
+        let thin = match if sound { None } else { self.unfelt_direction(&M) } {
+            Some(u) => match self.look_along(&u) {
+                Outcome::Undecided(far) => Some(far),
                 proof => return proof,
-            }
-        }
+            },
+            None => None,
+        };
         let d = Twist::from_array(factor.solve(sum));
-        if thin.is_none() && self.first_forces_hold(&d) {
+        if sound && self.first_forces_hold(&d) {
             return Outcome::Closed(Twist::ZERO);
         }
         if self.body.separates(&d) {
             return Outcome::Separated(d);
         }
         let here = self.body.at(&Twist::ZERO);
-        match self.body.best_step(&here, &self.body.along(&here, &d), 0.0) {
+        let along = self.body.along(&here, &d);
+        if !sound && thin.is_none() && self.forces_hold(&here, &along, &factor, 0.0) {
+            return Outcome::Closed(Twist::ZERO);
+        }
+        match self.body.best_step(&here, &along, 0.0) {
             Some(t) => self.descend(d.scaled(t), &factor, thin),
             None => self.last_look(thin.unwrap_or_else(|| self.far(&d))),
         }
@@ -169,6 +176,20 @@ impl<'a> Search<'a> {
         self.body.separates(&d).then_some(d)
     }
 
+    /// The unit twist that the contacts feel least, where that is so little that the margin is at most τ.
+    ///
+    /// A pivot alone does not tell: where the factors grow it is rounding. Eigenvalues do, and few grasps come here.
+    #[cold]
+    fn unfelt_direction(&self, M: &Symmetric6) -> Option<Twist> {
+        let M = M.full();
+        let noise = 2e-15 * M.trace();
+        let eigen = M.symmetric_eigen();
+        let least = eigen.eigenvalues.imin();
+        // Q1² ≤ 2 uᵀMu for every unit u.
+        let unfelt = eigen.eigenvalues[least] <= noise.max(0.5 * self.tau * self.tau);
+        unfelt.then(|| Twist::from_array(std::array::from_fn(|i| eigen.eigenvectors[(i, least)])))
+    }
+
     /// What a direction in which Ω is very long proves: separation, or a far point.
     #[cold]
     fn look_along(&self, u: &Twist) -> Outcome {
@@ -249,8 +270,7 @@ impl<'a> Search<'a> {
         let factor = H.factor(self.tau * self.tau);
         let along = self.body.along(&here, &Twist::from_array(factor.solve(g)));
         let grasp_map = self.body.grasp_map_square().0.factor(0.5 * self.tau * self.tau);
-        let strong = factor.is_strong() && grasp_map.is_strong();
-        strong && self.forces_hold(&here, &along, &grasp_map, 10.0 * self.tau)
+        grasp_map.smallest >= SOUND && self.forces_hold(&here, &along, &grasp_map, 10.0 * self.tau)
     }
 
     /// Whether the hint `d`, from a grasp nearby, separates this one with a margin that any search would see.

@@ -74,9 +74,10 @@ impl Symmetric6 {
     pub fn factor(&self, floor: f64) -> Factor {
         let mut l = self.lower;
         let mut inverse = [0.0; 6];
-        let mut weak = None;
+        let (mut weak, mut smallest) = (None, f64::INFINITY);
         for j in 0..6 {
             let mut pivot = l[j][j];
+            smallest = smallest.min(pivot);
             if pivot <= floor {
                 weak = weak.or(Some(j));
                 pivot = floor;
@@ -92,7 +93,7 @@ impl Symmetric6 {
                 row[j] *= inverse[j];
             }
         }
-        Factor { l, inverse, weak }
+        Factor { l, inverse, weak, smallest }
     }
 }
 
@@ -103,6 +104,8 @@ pub(crate) struct Factor {
     inverse: [f64; 6],
     /// The first pivot that was at or below the floor.
     weak: Option<usize>,
+    /// The smallest pivot before any was raised.
+    pub smallest: f64,
 }
 
 impl Factor {
@@ -122,12 +125,6 @@ impl Factor {
             }
         }
         x
-    }
-
-    /// Whether every pivot was above the floor.
-    #[inline]
-    pub fn is_strong(&self) -> bool {
-        self.weak.is_none()
     }
 
     /// A twist u with largest coefficient in the weak pivot's place and uᵀHu = that pivot, if there is a weak pivot.
@@ -182,7 +179,7 @@ mod tests {
             let y: [f64; 6] = std::array::from_fn(|_| random.normal());
             let factor = h.factor(0.0);
             let error = nalgebra::Vector6::from(factor.solve(y)) - inverse * nalgebra::Vector6::from(y);
-            assert!(factor.is_strong() && error.norm() < 1e-9 * inverse.norm());
+            assert!(factor.smallest > 0.0 && error.norm() < 1e-9 * inverse.norm());
             assert!((factor.trace_of_inverse() - inverse.trace()).abs() < 1e-9 * inverse.trace());
         }
     }

@@ -133,13 +133,14 @@ pub fn moved(touches: &[Touch], R: &Rotation, t: Vec3) -> Vec<Touch> {
 /// The centroid of the contacts and the largest distance from it.
 pub fn center_and_length(touches: &[Touch]) -> (Vec3, f64) {
     let center = touches.iter().map(|touch| touch.p).sum::<Vec3>() / touches.len() as f64;
-    (center, touches.iter().map(|touch| (touch.p - center).norm()).fold(0.0, f64::max))
+    let length = touches.iter().map(|touch| (touch.p - center).norm()).fold(0.0, f64::max);
+    // Coincident contacts have no length of their own.
+    (center, if length > 1e-12 { length } else { 1.0 })
 }
 
-/// Twice the smallest singular value of the grasp map scaled by 1, μ, μ, γ and lengths over the grasp's own.
+/// The smallest singular value of the grasp map scaled by 1, μ, μ, γ and lengths over the grasp's own.
 pub fn smallest_singular_value(touches: &[Touch]) -> f64 {
     let (center, length) = center_and_length(touches);
-    let length = if length > 0.0 { length } else { 1.0 };
     let mut square = nalgebra::Matrix6::<f64>::zeros();
     let mut add = |f: Vec3, m: Vec3| {
         let column = nalgebra::Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z);
