@@ -1,4 +1,38 @@
 //! Hands of fingers that are serial chains of joints: forward and inverse kinematics, limits, frames of the links.
+//!
+//! [`ChainHand::new`] checks a [`HandDescription`] (what a file under `scenarios/hands` holds) and prepares it; the hand
+//! then answers the planner through [`Hand`] and the clearance through [`ChainHand::link_frames`] and its siblings. A bad
+//! description is refused with a [`HandError`] that names the key.
+//!
+//! | question | file |
+//! |---|---|
+//! | Where is the tip, where are the links, how do they move? | `chain.rs` (a joint's motion: `screw.rs`) |
+//! | Which joints put the tip there? | `inverse/mod.rs` |
+//! | ... for abduction and two flexions, in closed form | `inverse/parallel.rs` |
+//! | ... for any three joints, numerically | `inverse/numeric.rs` |
+//! | Which three joints are solved for, which are spare? | `inverse/spare.rs` |
+//! | What remains of a finger while its spare joints stand still? | `inverse/triple.rs` |
+//! | Does an angle fit a joint's limits? | `inverse/range.rs` |
+//! | Which ball holds all places that the tip can reach? | `reach.rs` |
+//! | Is the description sound? | `check.rs`, messages in `error.rs` |
+//!
+//! # Frames
+//! H is the hand (palm, fixed in the world), B a finger's base, L the link behind a joint. Link k's frame is the moved
+//! frame of joint k: X_HLₖ(q) = X_HB · origin₀ · motion₀(q₀) ⋯ originₖ · motionₖ(qₖ). The fingertip's ball F is centred at the
+//! description's `tip` in the last link's frame, and turns with it.
+//!
+//! # Inverse kinematics
+//! Three joints of each finger are solved for. With more, the best conditioned three are chosen, those with a closed form
+//! first (the rule in full: `spare::choose`); the others are the model's `spare` and stay where `near` has them.
+//!
+//! - Three revolute joints, the last two or the first two parallel: closed form. All solutions are found (up to four); the axes
+//!   may meet or not and stand at any angle.
+//! - Three prismatic joints: closed form; the solution is unique.
+//! - Anything else: Levenberg-Marquardt from `near`, then from ten fixed other starts. It may miss a solution, never
+//!   invent one.
+//!
+//! A solution within 1e-10 (rad; m) of a limit is moved onto it. "Closest to `near`" means the smallest sum of squared
+//! differences over the three joints; the numeric method takes the solution that continues from `near` if there is one.
 
 mod chain;
 mod check;
@@ -18,7 +52,23 @@ use regrasp_api::{
     PlacedShape, TipKinematics, Vec3,
 };
 
-/// A hand whose fingers are serial chains.
+/// A hand whose fingers are serial chains of revolute or prismatic joints.
+///
+/// ```
+/// use regrasp_api::{FingerIndex, Hand, HandDescription};
+/// use regrasp_world::ChainHand;
+///
+/// # let text = include_str!("../../../../scenarios/hands/four-finger.toml");
+/// let description: HandDescription = toml::from_str(text)?; // scenarios/hands/four-finger.toml
+/// let hand = ChainHand::new(description)?;
+/// let finger = FingerIndex(0);
+/// let rest = hand.finger(finger).rest;
+/// let mut p_HF = hand.tip_center(finger, &rest);
+/// p_HF.z += 0.005;
+/// let raised = hand.inverse(finger, &p_HF, &rest).expect("5 mm higher is within reach");
+/// assert!((hand.tip_center(finger, &raised) - p_HF).norm() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct ChainHand {
     description: HandDescription,
@@ -34,7 +84,7 @@ struct Finger {
 }
 
 impl ChainHand {
-    /// Checks a description and prepares its kinematics.
+    /// Checks a description and prepares its kinematics (about a millisecond a finger).
     pub fn new(description: HandDescription) -> Result<Self, HandError> {
         let poses = check::check_hand(&description)?;
         let fingers = description
@@ -152,7 +202,10 @@ impl Hand for ChainHand {
     }
 
     fn inverse(&self, finger: FingerIndex, p_HF: &Vec3, near: &FingerJoints) -> Option<FingerJoints> {
-        let Finger { chain, inverse, .. } = &self.fingers[finger.index()];
+        let Finger { model, chain, inverse } = &self.fingers[finger.index()];
+        if (p_HF - model.p_HReach).norm_squared() > model.reach * model.reach {
+            return None;
+        }
         inverse.solve(chain, p_HF, near)
     }
 }

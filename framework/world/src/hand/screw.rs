@@ -41,6 +41,11 @@ impl Screw {
         }
     }
 
+    /// The point of the axis closest to `p` (m).
+    pub fn foot(&self, p: &Vec3) -> Vec3 {
+        self.point + self.axis * self.axis.dot(&(p - self.point))
+    }
+
     /// The screw after the motion of another joint that lies before it in the chain.
     pub fn moved_by(&self, before: &Self, q: f64) -> Self {
         Self {

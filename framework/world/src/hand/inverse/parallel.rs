@@ -7,7 +7,8 @@
 
 use super::{Choice, JointRange, Triple};
 use crate::hand::screw::{Screw, turn};
-use regrasp_api::{JointKind, Vec3};
+use nalgebra::Vector2;
+use regrasp_api::{JointKind, Mat3, Vec3, any_orthogonal};
 
 /// Sine of the angle up to which two axes count as parallel.
 const PARALLEL: f64 = 1e-9;
@@ -39,24 +40,23 @@ impl Lone {
     }
 }
 
-/// The chain, ready to be solved.
+/// The chain, ready to be solved, in a frame P whose z axis is the pair's direction u and whose origin lies on the lone axis.
 #[derive(Clone, Debug)]
 pub(in crate::hand) struct Parallel {
     lone: Lone,
+    R_PH: Mat3,
+    /// Origin of P in H (m).
+    p_HP: Vec3,
     /// Axis of the lone joint.
-    w: Vec3,
-    /// A point on it (m).
-    r: Vec3,
-    /// Direction of the pair: the axis of its first joint.
-    u: Vec3,
-    /// +1 or -1: the axis of its second joint is `sign · u`.
+    w_P: Vec3,
+    /// +1 or -1: the axes of the pair's joints are u and `sign · u`.
     sign: f64,
-    /// Points on the pair's axes (m).
-    a: Vec3,
-    b: Vec3,
-    /// b - a, across u.
-    ab: Vec3,
-    p0: Vec3,
+    /// Where the pair's axes cross the plane across u, and the way from the first to the second (m).
+    a: Vector2<f64>,
+    b: Vector2<f64>,
+    ab: Vector2<f64>,
+    /// The fingertip's centre, the three joints at 0 (m).
+    p0_P: Vec3,
 }
 
 impl Parallel {
@@ -67,85 +67,97 @@ impl Parallel {
             Lone::Third => (s3, s1, s2),
         };
         let u = first.axis;
-        let ab = second.point - first.point;
+        let x = any_orthogonal(&u);
+        let R_PH = Mat3::from_rows(&[x.transpose(), u.cross(&x).transpose(), u.transpose()]);
+        let [a, b] = [first, second].map(|screw| (R_PH * (screw.point - alone.point)).xy());
         Self {
             lone,
-            w: alone.axis,
-            r: alone.point,
-            u,
+            R_PH,
+            p_HP: alone.point,
+            w_P: R_PH * alone.axis,
             sign: u.dot(&second.axis).signum(),
-            a: first.point,
-            b: second.point,
-            ab: ab - u * u.dot(&ab),
-            p0: triple.p0,
+            a,
+            b,
+            ab: b - a,
+            p0_P: R_PH * (triple.p0 - alone.point),
         }
     }
 
-    /// The solution within the limits closest to `near`, for the fingertip at `p` (m).
+    /// The solution within the limits closest to `near`, for the fingertip at `p_HF` (m).
     #[inline]
-    pub fn solve(&self, p: &Vec3, ranges: &[JointRange; 3], near: &[f64; 3]) -> Option<[f64; 3]> {
-        let lone = if self.lone == Lone::First { 0 } else { 2 };
+    pub fn solve(&self, p_HF: &Vec3, ranges: &[JointRange; 3], near: &[f64; 3]) -> Option<[f64; 3]> {
+        let p = self.R_PH * (p_HF - self.p_HP);
         let mut best = Choice::new(near);
-        let (side, v) = match self.lone {
-            // u · (r + Rot(w, -q)(p - r)) = u · p0, with the sine's sign turned.
-            Lone::First => (-1.0, p - self.r),
-            // u · (r + Rot(w, q)(p0 - r)) = u · p.
-            Lone::Third => (1.0, self.p0 - self.r),
-        };
-        let (uw, wv) = (self.u.dot(&self.w), self.w.dot(&v));
-        let goal = if self.lone == Lone::First { &self.p0 } else { p };
-        let c = self.u.dot(&(goal - self.r)) - uw * wv;
-        let (ca, sa) = (self.u.dot(&v) - uw * wv, side * self.u.dot(&self.w.cross(&v)));
-        for (sin, cos) in circle(ca, sa, c, 1e-22, near[lone])? {
-            if !ranges[lone].may_hold(sin, cos) {
-                continue;
-            }
-            let Some(q) = ranges[lone].fit_angle(sin, cos, near[lone]) else { continue };
-            let turned = self.r + turn(&self.w, &v, side * sin, cos);
-            match self.lone {
-                Lone::First => {
-                    self.solve_pair(&self.p0, &turned, ranges, near, |qa, qb| best.offer([q, qa, qb]))
-                }
-                Lone::Third => self.solve_pair(&turned, p, ranges, near, |qa, qb| best.offer([qa, qb, q])),
-            }
+        match self.lone {
+            // Rot(w, -q) p must lie as far along u as p0 does, since the pair cannot change that.
+            Lone::First => self.level(&p, self.p0_P.z, -1.0, &ranges[0], near[0], |q, turned| {
+                let pair = [&ranges[1], &ranges[2]];
+                self.solve_pair(&self.p0_P.xy(), turned, pair, [near[1], near[2]], |a, b| {
+                    best.offer([q, a, b])
+                });
+            }),
+            // Rot(w, q) p0 must lie as far along u as p does.
+            Lone::Third => self.level(&self.p0_P, p.z, 1.0, &ranges[2], near[2], |q, turned| {
+                let pair = [&ranges[0], &ranges[1]];
+                self.solve_pair(turned, &p.xy(), pair, [near[0], near[1]], |a, b| best.offer([a, b, q]));
+            }),
         }
         best.taken()
     }
 
-    /// All angles of the pair within the limits that take the point `y` to `z` (m), which lie equally far along u.
+    /// The lone joint's angles q within its limits with u · Rot(w, `side` q) v = `height`; `found` is told q and the turned
+    /// vector across u.
+    #[inline]
+    fn level(
+        &self,
+        v: &Vec3,
+        height: f64,
+        side: f64,
+        range: &JointRange,
+        near: f64,
+        mut found: impl FnMut(f64, &Vector2<f64>),
+    ) {
+        let w = &self.w_P;
+        let along = w.z * w.dot(v);
+        let (a, b) = (v.z - along, side * (w.x * v.y - w.y * v.x));
+        for (sin, cos) in circle(a, b, height - along, 1e-22, near).into_iter().flatten() {
+            if range.may_hold(sin, cos)
+                && let Some(q) = range.fit_angle(sin, cos, near)
+            {
+                found(q, &turn(w, v, side * sin, cos).xy());
+            }
+        }
+    }
+
+    /// All angles of the pair within the limits that take the point `y` to `z` (m), both seen along u: a planar arm.
     #[inline]
     fn solve_pair(
         &self,
-        y: &Vec3,
-        z: &Vec3,
-        ranges: &[JointRange; 3],
-        near: &[f64; 3],
+        y: &Vector2<f64>,
+        z: &Vector2<f64>,
+        ranges: [&JointRange; 2],
+        near: [f64; 2],
         mut found: impl FnMut(f64, f64),
     ) {
-        let (ia, ib) = if self.lone == Lone::First { (1, 2) } else { (0, 1) };
-        let across = |v: Vec3| v - self.u * self.u.dot(&v);
-        let (by, az) = (across(y - self.b), across(z - self.a));
-        let by_turned = self.u.cross(&by);
+        let (by, az, ab) = (y - self.b, z - self.a, &self.ab);
         // |ab + Rot(β) by|² = |az|².
-        let c = 0.5 * (az.norm_squared() - self.ab.norm_squared() - by.norm_squared());
-        let (ca, sa) = (self.ab.dot(&by), self.ab.dot(&by_turned));
-        let Some(elbows) = circle(ca, sa, c, 1e-28, self.sign * near[ib]) else { return };
-        for (sin_b, cos_b) in elbows {
-            if !ranges[ib].may_hold(self.sign * sin_b, cos_b) {
+        let length = az.norm_squared();
+        let c = 0.5 * (length - ab.norm_squared() - by.norm_squared());
+        let (ca, sa) = (ab.dot(&by), ab.y * by.x - ab.x * by.y);
+        for (sin, cos) in circle(ca, sa, c, 1e-28, self.sign * near[1]).into_iter().flatten() {
+            if !ranges[1].may_hold(self.sign * sin, cos) {
                 continue;
             }
-            let reach = self.ab + by * cos_b + by_turned * sin_b;
-            let (sin_a, cos_a, length) = (self.u.dot(&reach.cross(&az)), reach.dot(&az), az.norm_squared());
+            let reach = Vector2::new(ab.x + by.x * cos - by.y * sin, ab.y + by.x * sin + by.y * cos);
             let shoulder = if length < 1e-24 {
                 // The point lies on the first axis: any angle will do.
-                Some(ranges[ia].clamp(near[ia]))
-            } else if ranges[ia].may_hold(sin_a / length, cos_a / length) {
-                ranges[ia].fit_angle(sin_a, cos_a, near[ia])
+                Some(ranges[0].clamp(near[0]))
             } else {
-                None
+                ranges[0].fit_direction(reach.perp(&az), reach.dot(&az), length, near[0])
             };
-            let elbow = shoulder.and_then(|_| ranges[ib].fit_angle(self.sign * sin_b, cos_b, near[ib]));
-            if let (Some(qa), Some(qb)) = (shoulder, elbow) {
+            if let Some(qa) = shoulder
+                && let Some(qb) = ranges[1].fit_angle(self.sign * sin, cos, near[1])
+            {
                 found(qa, qb);
             }
         }
@@ -166,9 +178,9 @@ fn circle(a: f64, b: f64, c: f64, slack: f64, near: f64) -> Option<[(f64, f64); 
     if discriminant < -(1e-10 * square + slack) {
         return None;
     }
-    let root = discriminant.max(0.0).sqrt();
-    // Where the slack was used, the nearest point of the circle stands for the missed one.
-    let c = c.clamp(-square.sqrt(), square.sqrt());
+    // Where the slack is used, the nearest point of the circle stands for the missed one.
+    let (root, c) =
+        if discriminant > 0.0 { (discriminant.sqrt(), c) } else { (0.0, square.sqrt().copysign(c)) };
     let scale = 1.0 / square;
     let (ac, bc) = (a * c, b * c);
     Some([

@@ -39,6 +39,13 @@ impl JointRange {
         cos * self.mid_cos + sin * self.mid_sin >= self.half_cos
     }
 
+    /// As `fit_angle`, for a sine and cosine multiplied by `scale` > 0.
+    #[inline]
+    pub fn fit_direction(&self, sin: f64, cos: f64, scale: f64, near: f64) -> Option<f64> {
+        let may_hold = cos * self.mid_cos + sin * self.mid_sin >= self.half_cos * scale;
+        if may_hold { self.fit_angle(sin, cos, near) } else { None }
+    }
+
     /// The position (m) itself, if it lies within the limits.
     #[inline]
     pub fn fit(&self, q: f64) -> Option<f64> {
