@@ -5,7 +5,7 @@ mod support;
 
 use regrasp_api::*;
 use regrasp_local_planners::{Rolling, RollingSettings};
-use support::{check, context, geometry};
+use support::{check, context};
 
 fn roll(bench: &support::Bench, from: &Configuration, to: &Pose, path: Option<&mut Path>) -> Reached {
     let rolling = Rolling::new(RollingSettings::default(), &bench.hand).unwrap();

@@ -28,11 +28,6 @@ impl ContactJacobian {
         &self.columns[..self.count]
     }
 
-    /// Velocity (m per unit) of the material point for these joint speeds.
-    pub fn velocity(&self, speeds: &[f64]) -> Vec3 {
-        self.columns().iter().zip(speeds).map(|(column, &speed)| column * speed).sum()
-    }
-
     /// The joint speeds that move the material point with velocity `v_H`, of least norm where joints are spare; `None` at a
     /// singularity.
     pub fn speeds(&self, v_H: &Vec3) -> Option<FingerJoints> {
@@ -61,6 +56,13 @@ fn solve([a, b, c]: [Vec3; 3], v: &Vec3) -> Option<Vec3> {
 mod tests {
     use super::*;
     use regrasp_api::{Random, Rotation, TipJacobian};
+
+    impl ContactJacobian {
+        /// Velocity (m per unit) of the material point for these joint speeds.
+        fn velocity(&self, speeds: &[f64]) -> Vec3 {
+            self.columns().iter().zip(speeds).map(|(column, &speed)| column * speed).sum()
+        }
+    }
 
     fn random_tip(count: usize) -> TipKinematics {
         let mut random = Random::from_key(5, count as u64, 0, 0);

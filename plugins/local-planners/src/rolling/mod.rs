@@ -2,14 +2,14 @@
 
 mod constraint;
 mod motion;
+mod span;
 mod step;
 
 use crate::common::{Levers, largest_travel, wrong_target};
 use motion::Motion;
 use regrasp_api::{
-    Build, CallError, Configuration, Context, Entry, FingerJoints, Hand, Hint, LocalPlanner, Path, PerFinger,
-    Pose, Reached, Reason, Settings, SettingsError, Slot, Target, Task, Vec3, check_count, check_range,
-    check_settings,
+    Build, CallError, Configuration, Context, Entry, Hand, Hint, LocalPlanner, Path, Pose, Reached, Reason,
+    Settings, SettingsError, Slot, Target, Task, check_count, check_range, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -76,6 +76,8 @@ impl Rolling {
             radius: task.hand.fingertip_radius(),
             closure: self.settings.tolerance_share * task.tolerances.closure,
             slip: self.settings.tolerance_share * task.tolerances.slip,
+            reach: task.resolution.transfer_step,
+            travel: largest_travel(task.resolution),
         }
     }
 }
@@ -94,11 +96,7 @@ impl LocalPlanner for Rolling {
             path.restart(from);
         }
         let roller = self.roller(task, from, to);
-        let mut state =
-            State { q: from.clone(), s: 0.0, slip_O: PerFinger::filled(from.joints.len(), Vec3::zeros()) };
-        if roller.motion.is_still() {
-            state.s = 1.0;
-        }
+        let mut state = roller.start(from);
         let mut pace = Pace::new(roller.motion.step(task.resolution), self.settings.halvings);
         let (mut hint, mut stop) = (Hint::default(), None);
         while state.s < 1.0 && stop.is_none() {
@@ -125,13 +123,7 @@ fn next(
     hint: &mut Hint,
     context: &mut Context<'_>,
 ) -> Result<Result<State, Reason>, CallError> {
-    let resolution = roller.task.resolution;
-    let rates = roller.rates(state, resolution.transfer_step, largest_travel(resolution));
-    let next = match rates {
-        Ok((rates, part)) => step(roller, state, &rates, part, pace),
-        Err(reason) => Err(reason),
-    };
-    let next = match next {
+    let next = match step(roller, state, pace) {
         Ok(next) => next,
         Err(reason) => return Ok(Err(reason)),
     };
@@ -141,21 +133,15 @@ fn next(
     })
 }
 
-/// Steps as far as the pace, `part` and what remains allow, halving until the contacts stay closed in between.
-fn step(
-    roller: &Roller<'_>,
-    state: &State,
-    rates: &PerFinger<FingerJoints>,
-    part: f64,
-    pace: &mut Pace,
-) -> Result<State, Reason> {
-    if part < pace.finest {
+/// Steps as far as the pace, the state and what remains allow, halving until the contacts stay closed in between.
+fn step(roller: &Roller<'_>, state: &State, pace: &mut Pace) -> Result<State, Reason> {
+    if state.longest < pace.finest {
         // So close to a singularity that a joint races.
         return Err(Reason::Reach);
     }
-    let mut h = pace.next(part, 1.0 - state.s);
+    let mut h = pace.next(state.longest, 1.0 - state.s);
     while h >= 0.5 * pace.finest {
-        match roller.advance(state, rates, h) {
+        match roller.advance(state, h) {
             Ok(next) => return Ok(next),
             Err(Failure::Finer) => h = pace.halve(h),
             Err(Failure::Stop(reason)) => return Err(reason),
@@ -191,9 +177,9 @@ impl Pace {
         Self { full, finest: full * 0.5_f64.powi(halvings as i32), now: full }
     }
 
-    /// The next step's length, at most `part`; what remains is divided evenly, so that no splinter is left over.
-    fn next(&mut self, part: f64, remains: f64) -> f64 {
-        let longest = self.now.max(self.finest).min(part);
+    /// The next step's length, at most `longest`; what remains is divided evenly, so that no splinter is left over.
+    fn next(&mut self, longest: f64, remains: f64) -> f64 {
+        let longest = self.now.max(self.finest).min(longest);
         self.now = (2.0 * self.now).min(self.full);
         remains / (remains / longest - 1e-9).ceil().max(1.0)
     }
