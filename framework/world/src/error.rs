@@ -1,5 +1,6 @@
 //! Why a description of a hand, an object or a scene is refused.
 
+use crate::hand::HandError;
 use regrasp_api::MeshError;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -26,6 +27,9 @@ pub enum WorldError {
         /// Why, and what to do.
         reason: String,
     },
+    /// The hand; its keys are below `hand`.
+    #[error("in `hand`: {0}")]
+    Hand(#[from] HandError),
     /// A mesh file that cannot be read.
     #[error("`{key}`: cannot read `{}`: {reason}", path.display())]
     File {

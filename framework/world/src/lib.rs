@@ -1,11 +1,15 @@
 //! The world: hands, objects, obstacles; kinematics, collision and distance.
 
+mod clearance;
 mod error;
 mod hand;
 mod mesh;
 mod object;
+mod scene;
 
+pub use clearance::SceneClearance;
 pub use error::WorldError;
 pub use hand::{ChainHand, HandError, LinkFrame, LinkFrames};
 pub use mesh::{MAX_FACETS, load_mesh};
 pub use object::{embed_object, load_object, primitive_mesh};
+pub use scene::{World, embed_problem};

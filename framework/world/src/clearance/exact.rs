@@ -1,0 +1,203 @@
+//! Exact distances by parry3d: the one border between nalgebra and glam.
+
+use super::rod::{Bounds, Rod};
+use parry3d_f64::math::{Pose as ParryPose, Rot3, Vector};
+use parry3d_f64::query::{self, PointQuery};
+use parry3d_f64::shape::{Ball, Capsule, Cuboid, Segment, Shape, TriMesh, TriMeshFlags};
+use regrasp_api::{Mesh, Pose, Vec3};
+use std::sync::Arc;
+
+/// A solid in its own frame S.
+#[derive(Clone)]
+pub(crate) enum Solid {
+    Rod(Rod),
+    /// A box about the origin.
+    Cuboid {
+        half_size: Vec3,
+    },
+    /// Everything with normal · x ≤ offset; the normal has length 1.
+    HalfSpace {
+        normal: Vec3,
+        offset: f64,
+    },
+    Mesh(Arc<MeshSolid>),
+}
+
+/// A closed mesh, prepared for distances.
+pub(crate) struct MeshSolid {
+    surface: TriMesh,
+    vertices: Vec<Vec3>,
+    /// One vertex of each connected component: the surfaces being apart, it tells whether the component is inside another body.
+    roots: Vec<Vec3>,
+    pub bounds: Bounds,
+}
+
+impl MeshSolid {
+    pub fn new(mesh: &Mesh) -> Self {
+        let vertices: Vec<_> = mesh.vertices().iter().map(to_glam).collect();
+        let surface = TriMesh::with_flags(vertices, mesh.facets().to_vec(), TriMeshFlags::ORIENTED)
+            .expect("a checked mesh has facets");
+        let bounds = Bounds::of(mesh.vertices().iter().copied());
+        Self { surface, vertices: mesh.vertices().to_vec(), roots: roots(mesh), bounds }
+    }
+
+    /// Signed distance of a point (m), negative inside.
+    pub fn signed_distance(&self, p: &Vec3) -> f64 {
+        let p = to_glam(p);
+        let projection = self.surface.project_local_point(p, false);
+        let distance = (p - projection.point).length();
+        if projection.is_inside { -distance } else { distance }
+    }
+
+    /// Whether the rod, in the mesh's frame, is farther from the solid than `clear` (m).
+    pub fn clear_of_rod(&self, rod: &Rod, clear: f64) -> bool {
+        let radius = rod.radius + clear;
+        let touches = if rod.a == rod.b {
+            self.surface.distance_to_local_point(to_glam(&rod.a), false).abs() <= radius
+        } else {
+            let capsule = Capsule::new(to_glam(&rod.a), to_glam(&rod.b), radius);
+            let identity = ParryPose::identity();
+            query::intersection_test(&identity, &self.surface, &identity, &capsule)
+                .map_or(true, |answer| answer.intersecting)
+        };
+        !touches && !self.contains(&rod.a)
+    }
+
+    fn contains(&self, p: &Vec3) -> bool {
+        self.bounds.distance(p) == 0.0 && self.surface.contains_local_point(to_glam(p))
+    }
+
+    /// The least n · x over the solid (m).
+    pub fn lowest(&self, n: &Vec3) -> f64 {
+        self.vertices.iter().map(|v| v.dot(n)).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// One vertex of each connected component.
+fn roots(mesh: &Mesh) -> Vec<Vec3> {
+    let mut seen = vec![false; mesh.facets().len()];
+    let (mut roots, mut open) = (Vec::new(), Vec::new());
+    for first in 0..seen.len() as u32 {
+        if seen[first as usize] {
+            continue;
+        }
+        roots.push(mesh.corners(first)[0]);
+        open.push(first);
+        seen[first as usize] = true;
+        while let Some(facet) = open.pop() {
+            for neighbor in mesh.neighbors(facet) {
+                if !std::mem::replace(&mut seen[neighbor.facet as usize], true) {
+                    open.push(neighbor.facet);
+                }
+            }
+        }
+    }
+    roots
+}
+
+/// The exact distance (m) of two solids at their poses in H, 0 where they overlap.
+///
+/// Two half-spaces never meet here: palm and obstacles do not move against each other, and links have none.
+pub(crate) fn distance(a: &Solid, X_HA: &Pose, b: &Solid, X_HB: &Pose) -> f64 {
+    match (a, b) {
+        (Solid::HalfSpace { normal, offset }, other) => above(normal, *offset, &X_HA.inv_mul(X_HB), other),
+        (other, Solid::HalfSpace { normal, offset }) => above(normal, *offset, &X_HB.inv_mul(X_HA), other),
+        _ => {
+            let X_AB = X_HA.inv_mul(X_HB);
+            if holds(a, &X_AB, b) || holds(b, &X_AB.inverse(), a) {
+                return 0.0;
+            }
+            let (core_a, core_b) = (Core::of(a), Core::of(b));
+            let identity = ParryPose::identity();
+            let apart = query::distance(
+                &core_a.placed(identity),
+                core_a.shape(),
+                &core_b.placed(to_parry(&X_AB)),
+                core_b.shape(),
+            )
+            .expect("parry knows the distance of balls, segments, boxes and meshes")
+            .distance;
+            (apart - core_a.radius - core_b.radius).max(0.0)
+        }
+    }
+}
+
+/// How far `solid` (its frame S seen from the half-space's) stays above the plane.
+fn above(normal: &Vec3, offset: f64, X_AS: &Pose, solid: &Solid) -> f64 {
+    let n_S = X_AS.rotation.inverse() * normal;
+    let lowest = match solid {
+        Solid::Rod(rod) => rod.a.dot(&n_S).min(rod.b.dot(&n_S)) - rod.radius,
+        Solid::Cuboid { half_size } => -half_size.dot(&n_S.abs()),
+        Solid::Mesh(mesh) => mesh.lowest(&n_S),
+        Solid::HalfSpace { .. } => return 0.0,
+    };
+    (lowest + normal.dot(&X_AS.translation.vector) - offset).max(0.0)
+}
+
+/// Whether a mesh `a` holds a part of `b` inside it, judged by one point of each part.
+fn holds(a: &Solid, X_AB: &Pose, b: &Solid) -> bool {
+    let Solid::Mesh(mesh) = a else { return false };
+    let inside = |p: &Vec3| mesh.contains(&(X_AB * nalgebra::Point3::from(*p)).coords);
+    match b {
+        Solid::Rod(rod) => inside(&rod.a),
+        Solid::Cuboid { .. } => inside(&Vec3::zeros()),
+        Solid::Mesh(other) => other.roots.iter().any(inside),
+        Solid::HalfSpace { .. } => false,
+    }
+}
+
+/// A solid without its thickness, as parry has it: segments and points are more exact than capsules.
+struct Core<'a> {
+    shape: CoreShape<'a>,
+    /// Its origin in S.
+    origin: Vec3,
+    radius: f64,
+}
+
+enum CoreShape<'a> {
+    Ball(Ball),
+    Segment(Segment),
+    Cuboid(Cuboid),
+    Mesh(&'a TriMesh),
+}
+
+impl<'a> Core<'a> {
+    fn of(solid: &'a Solid) -> Self {
+        let at_origin = |shape| Self { shape, origin: Vec3::zeros(), radius: 0.0 };
+        match solid {
+            Solid::Rod(rod) if rod.a == rod.b => {
+                Self { shape: CoreShape::Ball(Ball::new(rod.radius)), origin: rod.a, radius: 0.0 }
+            }
+            Solid::Rod(rod) => {
+                let segment = Segment::new(to_glam(&rod.a), to_glam(&rod.b));
+                Self { radius: rod.radius, ..at_origin(CoreShape::Segment(segment)) }
+            }
+            Solid::Cuboid { half_size } => at_origin(CoreShape::Cuboid(Cuboid::new(to_glam(half_size)))),
+            Solid::Mesh(mesh) => at_origin(CoreShape::Mesh(&mesh.surface)),
+            Solid::HalfSpace { .. } => unreachable!("half-spaces are handled before"),
+        }
+    }
+
+    /// The core's pose, its solid being at `X_S`.
+    fn placed(&self, X_S: ParryPose) -> ParryPose {
+        X_S.prepend_translation(to_glam(&self.origin))
+    }
+
+    fn shape(&self) -> &dyn Shape {
+        match &self.shape {
+            CoreShape::Ball(shape) => shape,
+            CoreShape::Segment(shape) => shape,
+            CoreShape::Cuboid(shape) => shape,
+            CoreShape::Mesh(shape) => *shape,
+        }
+    }
+}
+
+fn to_glam(v: &Vec3) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
+
+fn to_parry(X: &Pose) -> ParryPose {
+    let q = X.rotation.quaternion();
+    ParryPose::from_parts(to_glam(&X.translation.vector), Rot3::from_xyzw(q.i, q.j, q.k, q.w))
+}
