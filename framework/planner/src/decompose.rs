@@ -49,23 +49,45 @@ fn advance(
     context: &mut Context<'_>,
 ) -> Result<Option<(usize, Vec<Segment>)>, CallError> {
     let last = states.len() - 1;
-    let target = Target::Transfer(&states[last].X_HO);
-    let reached = session.drivers.transfer.connect(task, &states[at], &target, None, context)?;
-    let mut next = if reached.is_complete() { last } else { state_before(states, at, &reached.end) };
+    let (reached, rolled) = steps::transfer(session, task, &states[at], &states[last], context)?;
+    let mut next = if reached.is_complete() { last } else { farthest(states, at, &reached.end) };
     while next > at {
         context.proceed()?;
-        if let Some(segments) =
-            steps::transfer_then_regrasp(session, task, &states[at], &states[next], context)?
-        {
-            return Ok(Some((next, segments)));
+        if let Some(segment) = rolled_to(session, task, &rolled, &states[next], context)? {
+            let there = segment.states.last().expect("a rolled path has its start").clone();
+            if let Some(regrasps) = steps::regrasp_all(session, task, &there, &states[next], context)? {
+                let mut segments = vec![segment];
+                segments.retain(|segment| segment.states.len() > 1);
+                segments.extend(regrasps);
+                return Ok(Some((next, segments)));
+            }
         }
         next = at + ((next - at) as f64 * BACK_OFF) as usize;
     }
     Ok(None)
 }
 
-/// The last state after `at` that is no farther along the path than the pose of `end`.
-fn state_before(states: &[Configuration], at: usize, end: &Configuration) -> usize {
+/// The rolled transfer cut short, so that it ends exactly at the pose of `to`; `None` if the last bit cannot be rolled.
+fn rolled_to(
+    session: &Session<'_>,
+    task: &Task<'_>,
+    rolled: &Segment,
+    to: &Configuration,
+    context: &mut Context<'_>,
+) -> Result<Option<Segment>, CallError> {
+    let mut segment = rolled.clone();
+    if segment.states.last().is_some_and(|end| end.X_HO == to.X_HO) {
+        return Ok(Some(segment));
+    }
+    segment.states.truncate(farthest(&rolled.states, 0, to) + 1);
+    let from = segment.states.last().expect("a rolled path has its start").clone();
+    let (reached, rest) = steps::transfer(session, task, &from, to, context)?;
+    segment.states.extend(rest.states.into_iter().skip(1));
+    Ok(reached.is_complete().then_some(segment))
+}
+
+/// The last of the states after `at`, which lie on one straight motion of the object, that is no farther along it than `end`.
+fn farthest(states: &[Configuration], at: usize, end: &Configuration) -> usize {
     let progress = |q: &Configuration| {
         let start = &states[at].X_HO;
         let moved = (q.X_HO.translation.vector - start.translation.vector).norm();
