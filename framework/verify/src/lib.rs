@@ -1,1 +1,22 @@
-//! Under construction.
+//! The independent verifier of plans: shares no checking code with planner and plugins.
+//!
+//! [`verify`] re-derives everything from the plan file alone: own forward kinematics, closure against the object's mesh, slip, limits, stability
+//! with its own proofs, distances by parry. It works at ten times the plan's resolution on the motion that the plan means (joints and
+//! position linear, orientation by slerp between states), and reports for each check the worst value, the limit and the place.
+
+mod claims;
+mod clearance;
+mod contact_checks;
+mod ends;
+mod hand;
+mod lift;
+mod motion_checks;
+mod scene;
+mod shape;
+mod stability;
+mod track;
+mod verdict;
+mod walk;
+
+pub use verdict::{Check, Verdict};
+pub use walk::verify;

@@ -1,0 +1,74 @@
+//! Whether what the plan claims of its contacts agrees with its scenario.
+
+use crate::verdict::{Check, Gauge};
+use regrasp_api::{ObjectModel, Slot};
+use regrasp_plan::{ConeClaim, Criterion, MarginFrame, Place, Plan, TransferLaw};
+
+/// The contact models that the verifier knows.
+const KNOWN: [&str; 3] = ["contact-model/pcwf", "contact-model/frictionless", "contact-model/soft-finger"];
+
+/// Checks the claims against the scenario: the contact model that was used, no more friction than the object has, the object's own centre and length.
+pub(crate) fn claims(plan: &Plan, object: &ObjectModel) -> Check {
+    let mut gauge = Gauge::faults("claims");
+    let mut fault = |note: String| gauge.fault(|| Place { note: Some(note), ..Default::default() });
+    let claim = &plan.claims.contact;
+    let choice = plan.scenario.plugins.get(&Slot::ContactModel);
+    if choice.is_none_or(|choice| choice.id != claim.model) {
+        fault(format!("the plan claims `{}`, which is not its scenario's contact model", claim.model));
+    }
+    let known = KNOWN.contains(&claim.model.as_str());
+    match &claim.cone {
+        Some(cone) => {
+            if let Some(note) = wrong_cone(&claim.model, cone, plan, object.friction) {
+                fault(note);
+            }
+        }
+        None if known => fault(format!("`{}` has an elliptic cone, but the plan claims none", claim.model)),
+        None => {}
+    }
+    if !frame_agrees(&plan.claims.margin, object) {
+        fault("margins must be measured about the object's centre of mass, in its largest radius".into());
+    }
+    if plan.claims.criterion != Criterion::Closure || plan.claims.transfer_law != TransferLaw::Rolling {
+        fault("only force closure and rolling transfers can be checked".into());
+    }
+    if !known && gauge.worst() == Some(0.0) {
+        gauge.remark(&format!(
+            "not independently checked: `{}` is not a model that the verifier knows",
+            claim.model
+        ));
+    }
+    gauge.check()
+}
+
+/// What is wrong with the claimed cone, if anything.
+fn wrong_cone(model: &str, cone: &ConeClaim, plan: &Plan, friction: f64) -> Option<String> {
+    let ConeClaim { mu, gamma } = *cone;
+    if !(0.0..=friction).contains(&mu) {
+        return Some(format!("friction {mu} is claimed, the object has {friction}"));
+    }
+    if !(gamma >= 0.0 && gamma.is_finite()) {
+        return Some(format!("a torsional radius of {gamma} m is claimed"));
+    }
+    let settings = plan.scenario.plugins.get(&Slot::ContactModel).map(|choice| &choice.settings);
+    match model {
+        "contact-model/pcwf" if gamma != 0.0 => {
+            Some(format!("`{model}` transmits no torsion, {gamma} m is claimed"))
+        }
+        "contact-model/frictionless" if mu != 0.0 || gamma != 0.0 => {
+            Some(format!("`{model}` has no friction"))
+        }
+        "contact-model/soft-finger" => {
+            let set = settings.and_then(|settings| settings.get("gamma")?.as_f64());
+            (set.is_none_or(|set| gamma > set))
+                .then(|| format!("a torsional radius of {gamma} m is claimed, the scenario sets {set:?}"))
+        }
+        _ => None,
+    }
+}
+
+fn frame_agrees(claimed: &MarginFrame, object: &ObjectModel) -> bool {
+    let own = MarginFrame::of_object(object);
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * own.length;
+    near(claimed.length, own.length) && (0..3).all(|i| near(claimed.center_O[i], own.center_O[i]))
+}

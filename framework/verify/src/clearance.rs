@@ -1,0 +1,242 @@
+//! Distances of all pairs that may not touch, exact where it counts and certified in between.
+//!
+//! A pair's distance changes no faster than its bodies move. So from one exact distance follows a lower bound for as long as the bodies have not
+//! moved by more than its excess over what matters: over the distance demanded, and over the smallest one found yet, which is to be reported
+//! exactly. Only where that bound is used up a new distance is computed. Between samples the bodies may move by m in sum: both ends together
+//! must be farther than m from touching, else the step is bisected (conservative advancement: Mirtich, "Impulse-based dynamic simulation of rigid body
+//! systems", PhD thesis, Berkeley 1996; Schwarzer, Saha, Latombe, "Exact collision checking of robot paths", WAFR 2002).
+
+use crate::contact_checks::Touch;
+use crate::hand::Chains;
+use crate::scene::Scene;
+use crate::shape::{self, Core};
+use crate::track::{Frames, Leg, SAMPLES};
+use crate::verdict::{Check, Gauge, Side};
+use nalgebra::Point3;
+use regrasp_api::{Body, MAX_FINGERS, Vec3};
+use regrasp_plan::{Extreme, Place};
+
+/// How often a step between samples is halved before the clearance there counts as not certified: what remains is a hundredth of the step.
+const HALVINGS: u32 = 7;
+/// Meshes with more vertices than this are not searched for separating planes: the tree is faster.
+const MOST_SUPPORT_VERTICES: usize = 3000;
+
+/// The distances of all pairs.
+pub(crate) struct ClearanceCheck<'s> {
+    hand: &'s Chains,
+    scene: &'s Scene,
+    gauge: Gauge,
+    demanded: f64,
+    smallest: f64,
+    /// For each pair a lower bound of its distance at the last state (m); minus infinity where nothing is known.
+    lower: Vec<f64>,
+    /// For each pair the direction from the object to the other body at their last exact distance, in O; zero where nothing is known.
+    directions: Vec<Vec3>,
+    /// Room for halved steps.
+    spare: Frames,
+}
+
+/// A pair on one step of the plan.
+#[derive(Clone, Copy)]
+struct Step<'l, 'p> {
+    leg: &'l Leg<'p>,
+    state: usize,
+    pair: usize,
+    /// How far the two bodies move in sum, over the whole step (m).
+    motion: f64,
+}
+
+impl<'s> ClearanceCheck<'s> {
+    pub(crate) fn new(hand: &'s Chains, scene: &'s Scene, demanded: f64) -> Self {
+        Self {
+            hand,
+            scene,
+            gauge: Gauge::new("clearance", "m", Side::Above, demanded),
+            demanded,
+            smallest: f64::INFINITY,
+            lower: vec![f64::NEG_INFINITY; scene.pairs.len()],
+            directions: vec![Vec3::zeros(); scene.pairs.len()],
+            spare: Frames::new(hand),
+        }
+    }
+
+    /// Takes in a segment's first state: every pair anew, also whether one body lies inside the other.
+    pub(crate) fn start(&mut self, leg: &Leg<'_>, frames: &Frames) {
+        for pair in 0..self.scene.pairs.len() {
+            self.lower[pair] = f64::INFINITY;
+            if self.compared(leg, pair) {
+                let mut distance = self.balls(pair, frames);
+                if distance <= self.smallest.max(self.demanded) {
+                    distance = self.exact(pair, frames, true);
+                    self.take(pair, distance, || leg.at(0));
+                }
+                self.lower[pair] = distance;
+            }
+        }
+    }
+
+    /// Whether the pair may not touch in this segment: a fingertip that holds the object may, and the one that moves in a regrasp is looked at on
+    /// its own.
+    fn compared(&self, leg: &Leg<'_>, pair: usize) -> bool {
+        let (a, b) = self.scene.pairs[pair];
+        match (self.scene.bodies[a].body, self.scene.bodies[b].body) {
+            (Body::Object, Body::Fingertip(finger)) => {
+                leg.moving != Some(finger.index()) && !leg.states[0].holds(finger.index())
+            }
+            _ => true,
+        }
+    }
+
+    /// Takes in the step after `state`, sampled in `frames` ([`SAMPLES`] + 1 of them); `touches` are the contacts at the samples.
+    pub(crate) fn step(
+        &mut self,
+        leg: &Leg<'_>,
+        state: usize,
+        frames: &[Frames],
+        touches: &[[Option<Touch>; MAX_FINGERS]],
+    ) {
+        for pair in 0..self.scene.pairs.len() {
+            let (a, b) = self.scene.pairs[pair];
+            let motion = self.scene.motion(a, leg, state) + self.scene.motion(b, leg, state);
+            let floor = self.smallest.max(self.demanded);
+            if motion == 0.0 || self.lower[pair] - motion > floor {
+                self.lower[pair] -= motion;
+                continue;
+            }
+            let step = Step { leg, state, pair, motion };
+            for (sample, touches) in touches.iter().enumerate().skip(1) {
+                self.sample(step, sample, frames, touches);
+            }
+        }
+    }
+
+    /// Carries a pair's bound from the sample before to `sample`, with a new distance where the bound is used up.
+    fn sample(
+        &mut self,
+        step: Step<'_, '_>,
+        sample: usize,
+        frames: &[Frames],
+        touches: &[Option<Touch>; MAX_FINGERS],
+    ) {
+        let (pair, motion) = (step.pair, step.motion / SAMPLES as f64);
+        let floor = self.smallest.max(self.demanded);
+        let before = self.lower[pair];
+        if before - motion > floor {
+            self.lower[pair] = before - motion;
+            return;
+        }
+        let place = |fraction: f64| step.leg.between(step.state, fraction);
+        let end = sample as f64 / SAMPLES as f64;
+        let mut after = self.bound(pair, &frames[sample], touches);
+        if after <= floor {
+            after = self.exact(pair, &frames[sample], false);
+            self.take(pair, after, || place(end));
+        }
+        self.lower[pair] = after;
+        if before.min(after) > self.demanded && (before + after - motion) / 2.0 <= self.demanded {
+            let before = self.exact(pair, &frames[sample - 1], false);
+            let after = self.exact(pair, &frames[sample], false);
+            let start = (sample - 1) as f64 / SAMPLES as f64;
+            self.certify(step, (start, before), (end, after), 0);
+        }
+    }
+
+    /// Makes sure that the pair stays apart between two instants of a step, given as fraction and exact distance.
+    fn certify(&mut self, step: Step<'_, '_>, from: (f64, f64), to: (f64, f64), depth: u32) {
+        let bound = (from.1 + to.1 - step.motion * (to.0 - from.0)) / 2.0;
+        if bound > self.demanded {
+            return;
+        }
+        let middle = (from.0 + to.0) / 2.0;
+        let place = || step.leg.between(step.state, middle);
+        if depth == HALVINGS {
+            self.take(step.pair, bound, place);
+            return;
+        }
+        let mut frames = std::mem::replace(&mut self.spare, Frames::empty());
+        frames.place(self.hand, step.leg, step.state, middle);
+        let distance = self.exact(step.pair, &frames, false);
+        self.spare = frames;
+        self.take(step.pair, distance, place);
+        if distance > self.demanded {
+            self.certify(step, from, (middle, distance), depth + 1);
+            self.certify(step, (middle, distance), to, depth + 1);
+        }
+    }
+
+    fn take(&mut self, pair: usize, distance: f64, place: impl FnOnce() -> Place) {
+        let (a, b) = self.scene.pairs[pair];
+        let bodies = (self.scene.bodies[a].body, self.scene.bodies[b].body);
+        self.smallest = self.smallest.min(distance);
+        self.gauge.note(distance, || Place { pair: Some(bodies), ..place() });
+    }
+
+    /// Takes in the clearance of a moving fingertip above the object, where it counts as any other.
+    pub(crate) fn take_tip(&mut self, finger: usize, distance: f64, place: impl FnOnce() -> Place) {
+        self.smallest = self.smallest.min(distance);
+        let pair = Some((Body::Object, Body::Fingertip(regrasp_api::FingerIndex(finger as u8))));
+        self.gauge.note(distance, || Place { pair, ..place() });
+    }
+
+    /// The exact distance of a pair (m); not positive where the bodies overlap.
+    fn exact(&mut self, pair: usize, frames: &Frames, contained: bool) -> f64 {
+        let (a, b) = self.scene.pairs[pair];
+        let (first, second) = (&self.scene.bodies[a], &self.scene.bodies[b]);
+        let (X_HA, X_HB) = (self.scene.pose(a, frames), self.scene.pose(b, frames));
+        let cores = match (&first.core, &second.core) {
+            (Core::Mesh(solid), Core::Segment(p, q)) => {
+                let X_AB = X_HA.inv_mul(X_HB);
+                let [p, q] = [p, q].map(|end| (X_AB * Point3::from(*end)).coords);
+                let (distance, direction) = shape::from_segment(solid, &p, &q, contained);
+                self.directions[pair] = direction;
+                distance
+            }
+            _ => shape::distance(&first.core, X_HA, &second.core, X_HB, contained),
+        };
+        cores - first.radius - second.radius
+    }
+
+    /// A lower bound of a pair's distance (m) from balls around both.
+    fn balls(&self, pair: usize, frames: &Frames) -> f64 {
+        let (a, b) = self.scene.pairs[pair];
+        let center = |body: usize, p: Vec3| self.scene.pose(body, frames) * Point3::from(p);
+        match (self.scene.bodies[a].ball, self.scene.bodies[b].ball) {
+            (Some((p, r)), Some((q, s))) => (center(a, p) - center(b, q)).norm() - r - s,
+            _ => f64::NEG_INFINITY,
+        }
+    }
+
+    /// A cheap lower bound of a pair's distance (m): balls around both, or a plane between object and segment.
+    fn bound(&self, pair: usize, frames: &Frames, touches: &[Option<Touch>; MAX_FINGERS]) -> f64 {
+        let (a, b) = self.scene.pairs[pair];
+        let (first, second) = (&self.scene.bodies[a], &self.scene.bodies[b]);
+        let (X_HA, X_HB) = (self.scene.pose(a, frames), self.scene.pose(b, frames));
+        let mut bound = self.balls(pair, frames);
+        if let (Body::Object, Core::Mesh(solid), Core::Segment(p, q)) =
+            (first.body, &first.core, &second.core)
+        {
+            let X_AB = X_HA.inv_mul(X_HB);
+            let ends = [p, q].map(|end| (X_AB * Point3::from(*end)).coords);
+            let touch = match second.body {
+                Body::Link(finger, _) => touches[finger.index()].map(|touch| touch.n_O),
+                _ => None,
+            };
+            if solid.vertices.len() <= MOST_SUPPORT_VERTICES {
+                for n in [Some(self.directions[pair]), touch].into_iter().flatten() {
+                    let plane = ends[0].dot(&n).min(ends[1].dot(&n)) - solid.support(&n) - second.radius;
+                    bound = bound.max(plane);
+                }
+            }
+        }
+        bound
+    }
+
+    /// The smallest distance, for the certificate.
+    pub(crate) fn extreme(&self) -> Option<Extreme> {
+        self.gauge.worst().map(|value| Extreme { value, place: self.gauge.place().clone() })
+    }
+
+    pub(crate) fn check(self) -> Check {
+        self.gauge.check()
+    }
+}

@@ -1,0 +1,172 @@
+//! What happens at the contacts: closure, normals, slip, and whether the contact point moves continuously.
+
+use crate::hand::Chains;
+use crate::scene::Scene;
+use crate::track::{Frames, Leg, SAMPLES};
+use crate::verdict::{Check, Gauge, Side};
+use nalgebra::Point3;
+use regrasp_api::{MAX_FINGERS, Pose, Tolerances, Vec3};
+use regrasp_plan::{ContactRecord, Extreme, Place};
+
+/// A fingertip against the object's surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch {
+    /// The surface's point closest to the fingertip's centre, in O (m).
+    pub(crate) p_OC: Vec3,
+    /// The unit vector from there to the fingertip's centre, outward, in O.
+    pub(crate) n_O: Vec3,
+    /// The distance of ball and surface (m), negative where they overlap.
+    pub(crate) gap: f64,
+    /// The facet of the closest point: where to look first next time.
+    pub(crate) facet: u32,
+}
+
+impl Touch {
+    /// Where the ball of `radius` about `p_OTip` comes closest to the object.
+    pub(crate) fn find(scene: &Scene, p_OTip: &Vec3, radius: f64, near: u32) -> Self {
+        let closest = scene.object.closest(p_OTip, near);
+        let away = p_OTip - closest.point;
+        let (side, distance) = (if closest.inside { -1.0 } else { 1.0 }, away.norm());
+        // At no distance there is no direction; the gap is then minus the whole radius, which no tolerance allows.
+        let n_O = away.try_normalize(1e-12).map_or(Vec3::z(), |n| n * side);
+        Self { p_OC: closest.point, n_O, gap: side * distance - radius, facet: closest.facet }
+    }
+}
+
+/// The gauges of all contacts.
+pub(crate) struct ContactChecks<'s> {
+    hand: &'s Chains,
+    scene: &'s Scene,
+    closure: Gauge,
+    normals: Gauge,
+    slip: Gauge,
+    jumps: Gauge,
+    rolling: [Option<Rolling>; MAX_FINGERS],
+    facets: [u32; MAX_FINGERS],
+}
+
+/// How one contact has rolled since its transfer began.
+#[derive(Clone, Copy)]
+struct Rolling {
+    touch: Touch,
+    p_OTip: Vec3,
+    X_OL: Pose,
+    /// The sum of the differences of the two material points' displacements, tangential parts, in O (m).
+    slip_O: Vec3,
+}
+
+impl<'s> ContactChecks<'s> {
+    pub(crate) fn new(hand: &'s Chains, scene: &'s Scene, tolerances: &Tolerances) -> Self {
+        Self {
+            hand,
+            scene,
+            closure: Gauge::new("closure", "m", Side::AtMost, tolerances.closure),
+            normals: Gauge::new("normals", "rad", Side::AtMost, tolerances.normal),
+            slip: Gauge::new("slip", "m", Side::AtMost, tolerances.slip),
+            jumps: Gauge::new("contact-jumps", "m", Side::AtMost, tolerances.closure),
+            rolling: [None; MAX_FINGERS],
+            facets: [0; MAX_FINGERS],
+        }
+    }
+
+    /// Starts a segment: slip counts anew.
+    pub(crate) fn start(&mut self) {
+        self.rolling = [None; MAX_FINGERS];
+    }
+
+    /// Takes in the sample `sample` of [`SAMPLES`] after `state`; returns where the holding fingers touch.
+    pub(crate) fn sample(
+        &mut self,
+        leg: &Leg<'_>,
+        state: usize,
+        sample: usize,
+        frames: &Frames,
+    ) -> [Option<Touch>; MAX_FINGERS] {
+        let mut touches = [None; MAX_FINGERS];
+        for (finger, found) in touches.iter_mut().enumerate().take(self.hand.fingers.len()) {
+            let at = state + sample / SAMPLES;
+            if !leg.states[at].holds(finger) {
+                continue;
+            }
+            let p_OTip = frames.p_OTip(finger);
+            let touch = Touch::find(self.scene, &p_OTip, self.hand.tip_radius, self.facets[finger]);
+            self.facets[finger] = touch.facet;
+            let place = |fraction: f64| Place { finger: Some(finger), ..leg.between(state, fraction) };
+            let fraction = sample as f64 / SAMPLES as f64;
+            self.closure.note(touch.gap.abs(), || place(fraction));
+            if sample.is_multiple_of(SAMPLES)
+                && let Some(claimed) = &leg.states[at].record.contacts[finger]
+            {
+                self.compare(
+                    claimed,
+                    &touch,
+                    frames,
+                    || Place { finger: Some(finger), ..leg.at(at) },
+                    finger,
+                );
+            }
+            if leg.moving.is_none() {
+                self.roll(finger, touch, p_OTip, frames, || place(fraction));
+            }
+            *found = Some(touch);
+        }
+        touches
+    }
+
+    /// Holds a contact as the plan states it against where the fingertip really is.
+    fn compare(
+        &mut self,
+        claimed: &ContactRecord,
+        touch: &Touch,
+        frames: &Frames,
+        place: impl Fn() -> Place,
+        finger: usize,
+    ) {
+        let (p_OC, n_O) = (Vec3::from(claimed.point_O), Vec3::from(claimed.normal_O));
+        self.closure.note((p_OC - touch.p_OC).norm(), &place);
+        let R_HF = frames.last_link(&self.hand.fingers[finger]).rotation;
+        let p_HC = frames.p_HTip[finger] + R_HF * Vec3::from(claimed.point_F);
+        self.closure.note((frames.X_HO * Point3::from(p_OC) - Point3::from(p_HC)).norm(), &place);
+        let angle = n_O.cross(&touch.n_O).norm().atan2(n_O.dot(&touch.n_O));
+        self.normals.note(angle.max((n_O.norm() - 1.0).abs()), place);
+    }
+
+    /// Adds up the slip since the last sample.
+    ///
+    /// The displacement of the fingertip's material point at the contact, relative to the object, from the motion of the fingertip's centre
+    /// and its rotation in O, with the normal half-way: second order in the step. Rolling makes its tangential part zero.
+    fn roll(
+        &mut self,
+        finger: usize,
+        touch: Touch,
+        p_OTip: Vec3,
+        frames: &Frames,
+        place: impl Fn() -> Place,
+    ) {
+        let X_OL = frames.X_HO.inv_mul(frames.last_link(&self.hand.fingers[finger]));
+        let mut slip_O = Vec3::zeros();
+        if let Some(last) = &self.rolling[finger] {
+            let n_O = (last.touch.n_O + touch.n_O).try_normalize(1e-9).unwrap_or(touch.n_O);
+            let step = p_OTip - last.p_OTip;
+            let turn = (X_OL.rotation * last.X_OL.rotation.inverse()).scaled_axis();
+            let displacement = step - turn.cross(&n_O) * self.hand.tip_radius;
+            slip_O = last.slip_O + displacement - n_O * n_O.dot(&displacement);
+            // Closest points of a convex surface move no farther than the centre does: more is a jump over a concave edge.
+            let jump = (touch.p_OC - last.touch.p_OC).norm() - step.norm();
+            self.jumps.note(jump.max(0.0), &place);
+        }
+        self.slip.note(slip_O.norm(), place);
+        self.rolling[finger] = Some(Rolling { touch, p_OTip, X_OL, slip_O });
+    }
+
+    /// Largest closure residual and slip, for the certificate.
+    pub(crate) fn extremes(&self) -> (Option<Extreme>, Option<Extreme>) {
+        let extreme =
+            |gauge: &Gauge| gauge.worst().map(|value| Extreme { value, place: gauge.place().clone() });
+        (extreme(&self.closure), extreme(&self.slip))
+    }
+
+    pub(crate) fn checks(self) -> [Check; 4] {
+        [self.closure.check(), self.normals.check(), self.slip.check(), self.jumps.check()]
+    }
+}

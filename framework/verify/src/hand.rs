@@ -1,0 +1,137 @@
+//! The verifier's own forward kinematics, straight from the hand's description.
+
+use nalgebra::{Translation3, Unit};
+use regrasp_api::{
+    FingerDescription, HandDescription, JointDescription, JointKind, MAX_FINGER_JOINTS, MAX_FINGERS, Pose,
+    Rotation, Vec3,
+};
+
+/// All fingers; joints and links are counted through, finger after finger.
+#[derive(Debug)]
+pub(crate) struct Chains {
+    pub(crate) fingers: Vec<Chain>,
+    pub(crate) tip_radius: f64,
+    /// How many joints the hand has.
+    pub(crate) joint_count: usize,
+}
+
+/// One finger.
+#[derive(Debug)]
+pub(crate) struct Chain {
+    pub(crate) joints: Vec<Joint>,
+    /// Centre of the fingertip's ball in the last link's frame (m).
+    pub(crate) p_LTip: Vec3,
+    /// Index of its first joint among all joints.
+    pub(crate) first: usize,
+}
+
+/// One joint and its limits.
+#[derive(Debug)]
+pub(crate) struct Joint {
+    pub(crate) kind: JointKind,
+    X_PJ: Pose,
+    axis: Unit<Vec3>,
+    pub(crate) lower: f64,
+    pub(crate) upper: f64,
+    pub(crate) velocity: f64,
+    pub(crate) acceleration: f64,
+}
+
+impl Chains {
+    /// The chains of a description; `Err` says what makes no sense in it.
+    pub(crate) fn new(hand: &HandDescription) -> Result<Self, String> {
+        let count = hand.finger.len();
+        if !(1..=MAX_FINGERS).contains(&count) {
+            return Err(format!("the hand has {count} fingers, 1 to {MAX_FINGERS} are possible"));
+        }
+        if !(hand.fingertip_radius > 0.0 && hand.fingertip_radius < 1e3) {
+            return Err(format!("the fingertip radius {} m is not positive", hand.fingertip_radius));
+        }
+        let (mut fingers, mut first) = (Vec::new(), 0);
+        for finger in &hand.finger {
+            fingers.push(Chain::new(finger, first).map_err(|e| format!("finger `{}`: {e}", finger.name))?);
+            first += finger.joint.len();
+        }
+        Ok(Self { fingers, tip_radius: hand.fingertip_radius, joint_count: first })
+    }
+
+    /// Which finger and joint of it the joint counted through is.
+    pub(crate) fn owner(&self, joint: usize) -> (usize, usize) {
+        let finger = self.fingers.iter().rposition(|chain| chain.first <= joint).unwrap_or(0);
+        (finger, joint - self.fingers[finger].first)
+    }
+
+    /// Every joint, counted through.
+    pub(crate) fn joints(&self) -> impl Iterator<Item = &Joint> {
+        self.fingers.iter().flat_map(|chain| &chain.joints)
+    }
+}
+
+impl Chain {
+    fn new(finger: &FingerDescription, first: usize) -> Result<Self, String> {
+        let count = finger.joint.len();
+        if !(1..=MAX_FINGER_JOINTS).contains(&count) {
+            return Err(format!("{count} joints, 1 to {MAX_FINGER_JOINTS} are possible"));
+        }
+        let X_HBase = finger.base.pose()?;
+        let p_LTip = Vec3::from(finger.tip);
+        if !p_LTip.iter().all(|x| x.is_finite()) {
+            return Err("`tip` is not finite".into());
+        }
+        let mut joints = finger.joint.iter().map(Joint::new).collect::<Result<Vec<_>, _>>()?;
+        joints[0].X_PJ = X_HBase * joints[0].X_PJ;
+        Ok(Self { joints, p_LTip, first })
+    }
+
+    /// The frames of all links in H, base to tip.
+    pub(crate) fn frames(&self, joints: &[f64], frames: &mut [Pose]) {
+        let mut X_HP = Pose::identity();
+        for ((joint, &q), frame) in self.joints.iter().zip(joints).zip(frames) {
+            X_HP *= joint.X_PJ;
+            match joint.kind {
+                JointKind::Revolute => X_HP.rotation *= Rotation::from_axis_angle(&joint.axis, q),
+                JointKind::Prismatic => X_HP *= Translation3::from(joint.axis.into_inner() * q),
+            }
+            *frame = X_HP;
+        }
+    }
+
+    /// For each joint up to the one of `link`: how far (m) a point of that link can move for one unit of the joint, if it is within `reach` (m)
+    /// of the link's origin and prismatic joint j within `travel[j]` (m) of its zero.
+    pub(crate) fn levers(&self, link: usize, reach: f64, travel: &[f64]) -> [f64; MAX_FINGER_JOINTS] {
+        let mut levers = [0.0; MAX_FINGER_JOINTS];
+        let mut distance = reach;
+        for j in (0..=link).rev() {
+            let joint = &self.joints[j];
+            levers[j] = match joint.kind {
+                JointKind::Revolute => distance,
+                JointKind::Prismatic => 1.0,
+            };
+            distance += joint.X_PJ.translation.vector.norm();
+            if joint.kind == JointKind::Prismatic {
+                distance += travel[j];
+            }
+        }
+        levers
+    }
+}
+
+impl Joint {
+    fn new(joint: &JointDescription) -> Result<Self, String> {
+        let named = |what: &str| format!("joint `{}`: {what}", joint.name);
+        let X_PJ = joint.origin.pose().map_err(|error| named(&error))?;
+        let axis = Vec3::from(joint.axis);
+        if !(axis.norm().is_finite() && axis.norm() > 1e-9) {
+            return Err(named("`axis` must be finite and not zero"));
+        }
+        let limits = [joint.lower, joint.upper, joint.velocity, joint.acceleration];
+        let positive = joint.velocity > 0.0 && joint.acceleration > 0.0;
+        if !(limits.iter().all(|x| x.is_finite()) && positive && joint.lower <= joint.upper) {
+            return Err(named("its limits must be finite, in order, and positive for the rates"));
+        }
+        let (velocity, acceleration) = (joint.velocity, joint.acceleration);
+        let (lower, upper) = (joint.lower, joint.upper);
+        let axis = Unit::new_normalize(axis);
+        Ok(Self { kind: joint.kind, X_PJ, axis, lower, upper, velocity, acceleration })
+    }
+}

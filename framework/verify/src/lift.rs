@@ -1,0 +1,145 @@
+//! The moving fingertip of a regrasp: it touches the object at its two ends only, rising from there until it is lifted.
+
+use crate::clearance::ClearanceCheck;
+use crate::contact_checks::Touch;
+use crate::hand::Chains;
+use crate::scene::Scene;
+use crate::track::{Frames, Leg, SAMPLES};
+use crate::verdict::{Check, Gauge, Side};
+use regrasp_api::{Body, Tolerances, Vec3};
+use regrasp_plan::Place;
+
+/// How often a step is halved before its clearance counts as not certified.
+const HALVINGS: u32 = 10;
+
+/// What is known of the moving fingertip at one instant.
+#[derive(Clone, Copy, Debug)]
+struct Instant {
+    state: usize,
+    fraction: f64,
+    /// The ball's distance from the surface (m).
+    height: f64,
+    p_OTip: Vec3,
+}
+
+/// The gauges of moving fingertips.
+pub(crate) struct LiftCheck<'s> {
+    hand: &'s Chains,
+    scene: &'s Scene,
+    tolerances: Tolerances,
+    /// The height at which a finger counts as lifted (m).
+    lift: f64,
+    rise: Gauge,
+    touch: Gauge,
+    row: Vec<Instant>,
+    facet: u32,
+    spare: Frames,
+}
+
+impl<'s> LiftCheck<'s> {
+    pub(crate) fn new(hand: &'s Chains, scene: &'s Scene, tolerances: &Tolerances, lift: f64) -> Self {
+        Self {
+            hand,
+            scene,
+            tolerances: *tolerances,
+            lift,
+            // A fall by less than a micrometre is how exactly joints interpolate a straight retreat.
+            rise: Gauge::new("lift", "m", Side::AtMost, 1e-6),
+            touch: Gauge::new("touch-travel", "m", Side::AtMost, tolerances.slip),
+            row: Vec::new(),
+            facet: 0,
+            spare: Frames::new(hand),
+        }
+    }
+
+    pub(crate) fn start(&mut self) {
+        self.row.clear();
+    }
+
+    /// Takes in one sample of a regrasp.
+    pub(crate) fn sample(&mut self, finger: usize, state: usize, sample: usize, frames: &Frames) {
+        let p_OTip = frames.p_OTip(finger);
+        let touch = Touch::find(self.scene, &p_OTip, self.hand.tip_radius, self.facet);
+        self.facet = touch.facet;
+        let fraction = sample as f64 / SAMPLES as f64;
+        self.row.push(Instant { state, fraction, height: touch.gap, p_OTip });
+    }
+
+    /// Judges the whole regrasp.
+    pub(crate) fn finish(&mut self, leg: &Leg<'_>, finger: usize, clearance: &mut ClearanceCheck<'_>) {
+        let row = std::mem::take(&mut self.row);
+        let last = row.len() - 1;
+        let highest = row.iter().map(|i| i.height).fold(f64::NEG_INFINITY, f64::max);
+        let lift = self.lift.min(highest);
+        let lifted = |i: &Instant| i.height >= lift;
+        let (mut from, mut to) = (0, last);
+        if leg.states[0].holds(finger) {
+            from = row.iter().position(lifted).unwrap_or(0);
+            self.retreat(leg, finger, &mut row[..=from].iter());
+        }
+        if leg.states[leg.states.len() - 1].holds(finger) {
+            to = row.iter().rposition(lifted).unwrap_or(last);
+            self.retreat(leg, finger, &mut row[to..].iter().rev());
+        }
+        for instant in &row[from..=to.max(from)] {
+            clearance.take_tip(finger, instant.height, || leg.between(instant.state, instant.fraction));
+        }
+        for pair in row[from..=to.max(from)].windows(2) {
+            self.certify(leg, finger, (&pair[0], &pair[1]), 0, clearance);
+        }
+        self.row = row;
+    }
+
+    /// Follows a fingertip from its contact until it is lifted (backwards in time for the contact at the end).
+    fn retreat(&mut self, leg: &Leg<'_>, finger: usize, instants: &mut dyn Iterator<Item = &Instant>) {
+        let Some(contact) = instants.next() else { return };
+        let (mut before, mut touching) = (contact, true);
+        for instant in instants {
+            let place = || Place { finger: Some(finger), ..leg.between(instant.state, instant.fraction) };
+            self.rise.note(before.height - instant.height, place);
+            touching &= instant.height <= self.tolerances.closure;
+            if touching {
+                self.touch.note((instant.p_OTip - contact.p_OTip).norm(), place);
+            }
+            before = instant;
+        }
+    }
+
+    /// Makes sure that the lifted tip stays clear between two instants.
+    fn certify(
+        &mut self,
+        leg: &Leg<'_>,
+        finger: usize,
+        (a, b): (&Instant, &Instant),
+        depth: u32,
+        clearance: &mut ClearanceCheck<'_>,
+    ) {
+        let state = a.state;
+        let (start, end) = (a.fraction, if b.state == state { b.fraction } else { 1.0 });
+        let tip = Body::Fingertip(regrasp_api::FingerIndex(finger as u8));
+        let body = self.scene.bodies.iter().position(|solidity| solidity.body == tip);
+        let motion = body.map_or(0.0, |body| self.scene.motion(body, leg, state)) * (end - start);
+        let demanded = self.tolerances.clearance;
+        let bound = (a.height + b.height - motion) / 2.0;
+        if bound > demanded || a.height.min(b.height) <= demanded {
+            return; // Clear, or known not to be.
+        }
+        let fraction = (start + end) / 2.0;
+        if depth == HALVINGS {
+            clearance.take_tip(finger, bound, || leg.between(state, fraction));
+            return;
+        }
+        self.spare.place(self.hand, leg, state, fraction);
+        let p_OTip = self.spare.p_OTip(finger);
+        let height = Touch::find(self.scene, &p_OTip, self.hand.tip_radius, self.facet).gap;
+        clearance.take_tip(finger, height, || leg.between(state, fraction));
+        let middle = Instant { state, fraction, height, p_OTip };
+        let end = Instant { state, fraction: end, ..*b };
+        self.certify(leg, finger, (a, &middle), depth + 1, clearance);
+        self.certify(leg, finger, (&middle, &end), depth + 1, clearance);
+    }
+
+    pub(crate) fn checks(self) -> [Check; 2] {
+        [self.rise.check(), self.touch.check()]
+    }
+}

@@ -1,0 +1,164 @@
+//! What can be seen from the plan's numbers alone: times, rates, limits, continuity, rest, contact sets.
+
+use crate::hand::Chains;
+use crate::track::Leg;
+use crate::verdict::{Check, Gauge, Side};
+use regrasp_plan::{ContactRecord, Place, StateRecord};
+
+/// What rounding may add to a fraction of a limit.
+const ROUNDING: f64 = 1e-9;
+
+/// Orientations are unit quaternions.
+pub(crate) fn quaternions(legs: &[Leg<'_>]) -> Check {
+    let mut gauge = Gauge::new("quaternions", "", Side::AtMost, 1e-9);
+    for leg in legs {
+        for (k, state) in leg.states.iter().enumerate() {
+            let norm = state.record.object.orientation.iter().map(|x| x * x).sum::<f64>().sqrt();
+            gauge.note((norm - 1.0).abs(), || leg.at(k));
+        }
+    }
+    gauge.check()
+}
+
+/// Times increase within each segment.
+pub(crate) fn times(legs: &[Leg<'_>]) -> Check {
+    let mut gauge = Gauge::new("times", "s", Side::Above, 0.0);
+    for leg in legs {
+        for (k, pair) in leg.states.windows(2).enumerate() {
+            gauge.note(pair[1].record.time - pair[0].record.time, || leg.at(k));
+        }
+    }
+    gauge.check()
+}
+
+/// Every joint stays within its limits; between states it does because it moves linearly.
+pub(crate) fn joint_limits(hand: &Chains, legs: &[Leg<'_>]) -> Check {
+    let mut gauge = Gauge::new("joint-limits", "rad", Side::AtMost, ROUNDING);
+    for leg in legs {
+        for (k, state) in leg.states.iter().enumerate() {
+            for (j, (&q, joint)) in state.joints.iter().zip(hand.joints()).enumerate() {
+                let excess = (q - joint.upper).max(joint.lower - q);
+                gauge.note(excess, || joint_place(hand, leg, k, j));
+            }
+        }
+    }
+    gauge.check()
+}
+
+fn joint_place(hand: &Chains, leg: &Leg<'_>, state: usize, joint: usize) -> Place {
+    let (finger, joint) = hand.owner(joint);
+    Place { finger: Some(finger), joint: Some(joint), ..leg.at(state) }
+}
+
+/// Velocities, and accelerations as second differences, of every joint over the whole motion: `regrasp_plan::assign_times` defines them.
+pub(crate) fn rates(hand: &Chains, legs: &[Leg<'_>]) -> [Check; 2] {
+    let mut velocities = Gauge::new("velocities", "of the limit", Side::AtMost, 1.0 + ROUNDING);
+    let mut accelerations = Gauge::new("accelerations", "of the limit", Side::AtMost, 1.0 + ROUNDING);
+    // The motion's states in a row; those that two segments share count once.
+    let row: Vec<(&Leg<'_>, usize)> = legs
+        .iter()
+        .enumerate()
+        .flat_map(|(s, leg)| (usize::from(s > 0)..leg.states.len()).map(move |k| (leg, k)))
+        .collect();
+    let state = |i: usize| &row[i].0.states[row[i].1];
+    let step = |i: usize| state(i + 1).record.time - state(i).record.time;
+    for (j, joint) in hand.joints().enumerate() {
+        let mut before = (0.0, 0.0);
+        for i in 0..row.len() {
+            let after = if i + 1 < row.len() {
+                (step(i), (state(i + 1).joints[j] - state(i).joints[j]) / step(i))
+            } else {
+                (0.0, 0.0)
+            };
+            let place = || joint_place(hand, row[i].0, row[i].1, j);
+            velocities.note(after.1.abs() / joint.velocity, place);
+            let acceleration = 2.0 * (after.1 - before.1) / (after.0 + before.0);
+            accelerations.note(acceleration.abs() / joint.acceleration, place);
+            before = after;
+        }
+    }
+    [velocities.check(), accelerations.check()]
+}
+
+/// Consecutive segments share their end states exactly.
+pub(crate) fn continuity(legs: &[Leg<'_>]) -> Check {
+    let mut gauge = Gauge::new("continuity", "largest difference", Side::AtMost, 0.0);
+    for pair in legs.windows(2) {
+        if let (Some(end), Some(start)) = (pair[0].states.last(), pair[1].states.first()) {
+            gauge.note(difference(end.record, start.record), || pair[1].at(0));
+        }
+    }
+    gauge.check()
+}
+
+/// The largest difference of any number of two states; infinite where one has a contact that the other lacks.
+fn difference(a: &StateRecord, b: &StateRecord) -> f64 {
+    let numbers = |s: &StateRecord| {
+        let pose = s.object.position.into_iter().chain(s.object.orientation);
+        pose.chain([s.time]).chain(s.joints.concat()).collect::<Vec<_>>()
+    };
+    let contacts = a.contacts.iter().zip(&b.contacts).map(|(a, b)| contact_difference(a, b));
+    largest(&numbers(a), &numbers(b)).max(contacts.fold(0.0, f64::max))
+}
+
+fn contact_difference(a: &Option<ContactRecord>, b: &Option<ContactRecord>) -> f64 {
+    match (a, b) {
+        (None, None) => 0.0,
+        (Some(a), Some(b)) => {
+            let numbers = |c: &ContactRecord| [c.point_O, c.normal_O, c.point_F].concat();
+            largest(&numbers(a), &numbers(b))
+        }
+        _ => f64::INFINITY,
+    }
+}
+
+fn largest(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// In a regrasp the object and all fingers but one rest, exactly.
+pub(crate) fn rest(hand: &Chains, legs: &[Leg<'_>]) -> Check {
+    let mut gauge = Gauge::new("rest", "largest difference", Side::AtMost, 0.0);
+    for leg in legs {
+        let Some(moving) = leg.moving else { continue };
+        for (k, pair) in leg.states.windows(2).enumerate() {
+            let pose = |i: usize| {
+                let object = &pair[i].record.object;
+                [&object.position[..], &object.orientation].concat()
+            };
+            gauge.note(largest(&pose(0), &pose(1)), || leg.at(k));
+            for finger in (0..hand.fingers.len()).filter(|&finger| finger != moving) {
+                let (a, b) = (&pair[0].record.joints[finger], &pair[1].record.joints[finger]);
+                gauge.note(largest(a, b), || Place { finger: Some(finger), ..leg.at(k) });
+            }
+        }
+    }
+    gauge.check()
+}
+
+/// The same fingers hold all through a segment, resting ones at the same contact; the moving one at the segment's ends at most.
+pub(crate) fn contacts(hand: &Chains, legs: &[Leg<'_>]) -> Check {
+    let mut gauge = Gauge::faults("contacts");
+    for leg in legs {
+        for finger in 0..hand.fingers.len() {
+            let place =
+                |k: usize, note: &str| Place { finger: Some(finger), note: Some(note.into()), ..leg.at(k) };
+            let contact = |k: usize| &leg.states[k].record.contacts[finger];
+            for k in 1..leg.states.len() {
+                let last = k + 1 == leg.states.len();
+                if leg.moving == Some(finger) {
+                    if !last && contact(k).is_some() {
+                        gauge.fault(|| {
+                            place(k, "the moving finger holds the object in the middle of a regrasp")
+                        });
+                    }
+                } else if contact(k).is_some() != contact(0).is_some() {
+                    gauge.fault(|| place(k, "a finger starts or stops holding within a segment"));
+                } else if leg.moving.is_some() && contact_difference(contact(k), contact(0)) > 0.0 {
+                    gauge.fault(|| place(k, "the contact of a resting finger changes"));
+                }
+            }
+        }
+    }
+    gauge.check()
+}

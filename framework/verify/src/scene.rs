@@ -1,0 +1,200 @@
+//! All bodies of the scene and the pairs of them that may not touch.
+
+use crate::hand::Chains;
+use crate::shape::{Core, Solid, distance};
+use crate::track::{Frames, Leg};
+use regrasp_api::{
+    Body, FingerIndex, HandDescription, MAX_FINGER_JOINTS, ObjectModel, PlacedShape, Pose, Problem, Vec3,
+};
+use std::sync::Arc;
+
+/// The scene's bodies, one entry for each shape.
+pub(crate) struct Scene {
+    pub(crate) object: Arc<Solid>,
+    /// Largest distance of the object's surface from its frame's origin (m).
+    object_reach: f64,
+    pub(crate) bodies: Vec<Solidity>,
+    /// Indices of two bodies that may not touch.
+    pub(crate) pairs: Vec<(usize, usize)>,
+}
+
+/// One shape of a body.
+pub(crate) struct Solidity {
+    pub(crate) body: Body,
+    pub(crate) core: Core,
+    pub(crate) radius: f64,
+    /// Centre and radius of a ball that holds core and radius, in the body's frame (m).
+    pub(crate) ball: Option<(Vec3, f64)>,
+    /// The link whose frame it moves in, counted through.
+    link: Option<usize>,
+    /// First joint of its finger, and how far its points can move for one unit of each joint (m).
+    first: usize,
+    levers: [f64; MAX_FINGER_JOINTS],
+}
+
+impl Scene {
+    /// The bodies of a problem, for a motion whose joint positions stay within ± `travel` (one for each joint of the hand).
+    pub(crate) fn new(
+        problem: &Problem,
+        object: &ObjectModel,
+        hand: &Chains,
+        travel: &[f64],
+    ) -> Result<Self, String> {
+        let solid = Arc::new(Solid::new(&object.mesh)?);
+        let mut scene = Self {
+            object: solid.clone(),
+            object_reach: object.mesh.radius(),
+            bodies: Vec::new(),
+            pairs: Vec::new(),
+        };
+        scene.add(Body::Object, Core::Mesh(solid), 0.0);
+        for placed in &problem.hand.palm {
+            scene.add_described(Body::Palm, placed).map_err(|e| format!("palm: {e}"))?;
+        }
+        for (i, obstacle) in problem.obstacle.iter().enumerate() {
+            let placed = PlacedShape { shape: obstacle.shape.clone(), pose: obstacle.pose.clone() };
+            let index = u16::try_from(i).map_err(|_| "too many obstacles")?;
+            let named = |e| format!("obstacle `{}`: {e}", obstacle.name);
+            scene.add_described(Body::Obstacle(index), &placed).map_err(named)?;
+        }
+        for (f, (finger, chain)) in problem.hand.finger.iter().zip(&hand.fingers).enumerate() {
+            let index = FingerIndex(f as u8);
+            for (link, joint) in finger.joint.iter().enumerate() {
+                for placed in &joint.link {
+                    let body = Body::Link(index, link as u8);
+                    let named = |e| format!("a link of finger `{}`: {e}", finger.name);
+                    scene.add_described(body, placed).map_err(named)?;
+                    scene.attach(chain, link, travel);
+                }
+            }
+            scene.add(Body::Fingertip(index), Core::Point(chain.p_LTip), hand.tip_radius);
+            scene.attach(chain, chain.joints.len() - 1, travel);
+        }
+        scene.pair_up(problem, hand)?;
+        Ok(scene)
+    }
+
+    fn add_described(&mut self, body: Body, placed: &PlacedShape) -> Result<(), String> {
+        let (core, radius) = Core::of(placed)?;
+        self.add(body, core, radius);
+        Ok(())
+    }
+
+    fn add(&mut self, body: Body, core: Core, radius: f64) {
+        let ball = core.ball().map(|(center, core)| (center, core + radius));
+        self.bodies.push(Solidity {
+            body,
+            core,
+            radius,
+            ball,
+            link: None,
+            first: 0,
+            levers: Default::default(),
+        });
+    }
+
+    /// Fixes the body added last to a link.
+    fn attach(&mut self, chain: &crate::hand::Chain, link: usize, travel: &[f64]) {
+        let body = self.bodies.last_mut().expect("a body was just added");
+        let reach = body.ball.map_or(f64::INFINITY, |(center, radius)| center.norm() + radius);
+        body.link = Some(chain.first + link);
+        body.first = chain.first;
+        body.levers = chain.levers(link, reach, &travel[chain.first..]);
+    }
+
+    fn pair_up(&mut self, problem: &Problem, hand: &Chains) -> Result<(), String> {
+        let mounted = self.mounted(problem, hand)?;
+        for a in 0..self.bodies.len() {
+            for b in a + 1..self.bodies.len() {
+                let (first, second) = (self.bodies[a].body, self.bodies[b].body);
+                let by_construction = first == Body::Palm && mounted.contains(&second);
+                if may_not_touch(first, second, &problem.hand) && !by_construction {
+                    self.pairs.push((a, b));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The links that are mounted on the palm: first links with a shape that are no farther from it, in the resting posture, than the planner keeps
+    /// bodies apart.
+    fn mounted(&self, problem: &Problem, hand: &Chains) -> Result<Vec<Body>, String> {
+        let mut frames = Frames::new(hand);
+        for (finger, chain) in problem.hand.finger.iter().zip(&hand.fingers) {
+            if finger.rest.len() != chain.joints.len() || !finger.rest.iter().all(|q| q.is_finite()) {
+                return Err(format!("finger `{}`: `rest` needs one number for each joint", finger.name));
+            }
+            chain.frames(&finger.rest, &mut frames.X_HL[chain.first..]);
+        }
+        let limits = &problem.limits;
+        let close = limits.tolerances.clearance + limits.resolution.clearance;
+        let distance = |a: usize, b: usize| {
+            let (first, second) = (&self.bodies[a], &self.bodies[b]);
+            let (X_HA, X_HB) = (self.pose(a, &frames), self.pose(b, &frames));
+            distance(&first.core, X_HA, &second.core, X_HB, true) - first.radius - second.radius
+        };
+        let palm: Vec<usize> =
+            (0..self.bodies.len()).filter(|&a| self.bodies[a].body == Body::Palm).collect();
+        let is_first =
+            |body: Body| matches!((body, rank(body, &problem.hand)), (Body::Link(..), Some((_, 0))));
+        let links = (0..self.bodies.len()).filter(|&b| is_first(self.bodies[b].body));
+        let mounted = links.filter(|&b| palm.iter().any(|&a| distance(a, b) <= close));
+        Ok(mounted.map(|b| self.bodies[b].body).collect())
+    }
+
+    /// The pose of a body's frame in H.
+    pub(crate) fn pose<'f>(&self, body: usize, frames: &'f Frames) -> &'f Pose {
+        static IDENTITY: std::sync::LazyLock<Pose> = std::sync::LazyLock::new(Pose::identity);
+        match (self.bodies[body].link, self.bodies[body].body) {
+            (Some(link), _) => &frames.X_HL[link],
+            (None, Body::Object) => &frames.X_HO,
+            _ => &IDENTITY,
+        }
+    }
+
+    /// How far (m) any point of a body moves at most from a state to the next; its speed is even over the step, or below this.
+    pub(crate) fn motion(&self, body: usize, leg: &Leg<'_>, state: usize) -> f64 {
+        let this = &self.bodies[body];
+        if this.link.is_some() {
+            let steps = leg.joint_steps(state).skip(this.first);
+            return this.levers.iter().zip(steps).map(|(lever, step)| lever_times(*lever, step)).sum();
+        }
+        if this.body != Body::Object {
+            return 0.0;
+        }
+        let (from, to) = (&leg.states[state].X_HO, &leg.states[state + 1].X_HO);
+        let angle = regrasp_api::angle_between(&from.rotation, &to.rotation);
+        (to.translation.vector - from.translation.vector).norm() + angle * self.object_reach
+    }
+}
+
+/// A joint at rest moves nothing, however far its link reaches.
+fn lever_times(lever: f64, step: f64) -> f64 {
+    if step == 0.0 { 0.0 } else { lever * step }
+}
+
+/// Which link of each finger is the first, the last and so on that has a shape: its rank among them; a fingertip has the last link's rank.
+fn rank(body: Body, hand: &HandDescription) -> Option<(usize, usize)> {
+    let shaped = |finger: usize, below: usize| {
+        hand.finger[finger].joint[..below].iter().filter(|joint| !joint.link.is_empty()).count()
+    };
+    match body {
+        Body::Link(finger, link) => Some((finger.index(), shaped(finger.index(), link.into()))),
+        Body::Fingertip(finger) => {
+            let joints = hand.finger[finger.index()].joint.len();
+            Some((finger.index(), shaped(finger.index(), joints)))
+        }
+        _ => None,
+    }
+}
+
+/// Whether a pair is to be compared: not what is fixed to the same frame, nor consecutive links of a finger (those between which no link has a
+/// shape), of which the fingertip is the last.
+fn may_not_touch(a: Body, b: Body, hand: &HandDescription) -> bool {
+    let fixed = |body: Body| matches!(body, Body::Palm | Body::Obstacle(_));
+    match (rank(a, hand), rank(b, hand)) {
+        (Some((f, i)), Some((g, j))) => f != g || i.abs_diff(j) > 1,
+        (None, None) => !(fixed(a) && fixed(b)) && a != b,
+        _ => true,
+    }
+}

@@ -1,0 +1,268 @@
+//! Solids as a core and a radius around it, and their exact distances by parry. The border between nalgebra and glam.
+
+use nalgebra::Point3;
+use parry3d_f64::math::{Pose as ParryPose, Rot3, Vector};
+use parry3d_f64::query::details::distance_segment_segment;
+use parry3d_f64::query::{self, ClosestPoints, PointQuery, PointQueryWithLocation};
+use parry3d_f64::shape::{Cuboid, Segment, Shape as ParryShape, TriMesh, TriMeshFlags};
+use regrasp_api::{Mesh, PlacedShape, Pose, Shape, Vec3};
+use std::path::Path;
+use std::sync::Arc;
+
+/// What is left of a solid when a layer of constant thickness is taken off; in the frame of what it belongs to.
+#[derive(Clone, Debug)]
+pub(crate) enum Core {
+    Point(Vec3),
+    Segment(Vec3, Vec3),
+    Cuboid { X: Pose, half: Vec3 },
+    Mesh(Arc<Solid>),
+    HalfSpace { n: Vec3, offset: f64 },
+}
+
+/// A closed mesh with its tree.
+#[derive(Debug)]
+pub(crate) struct Solid {
+    pub(crate) vertices: Vec<Vec3>,
+    mesh: TriMesh,
+}
+
+/// The closest point of a solid's surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Closest {
+    pub(crate) point: Vec3,
+    pub(crate) inside: bool,
+    pub(crate) facet: u32,
+}
+
+impl Solid {
+    pub(crate) fn new(mesh: &Mesh) -> Result<Self, String> {
+        let vertices = mesh.vertices().iter().map(vector).collect();
+        let flags = TriMeshFlags::ORIENTED;
+        let tree = TriMesh::with_flags(vertices, mesh.facets().to_vec(), flags).map_err(|e| e.to_string())?;
+        Ok(Self { vertices: mesh.vertices().to_vec(), mesh: tree })
+    }
+
+    /// The closest point of the surface. `near` is a facet that is likely to hold it; it changes the cost alone.
+    pub(crate) fn closest(&self, p: &Vec3, near: u32) -> Closest {
+        let p = vector(p);
+        let facet = near.min(self.mesh.num_triangles() as u32 - 1);
+        let bound = self.mesh.triangle(facet).project_local_point(p, false).point;
+        // The facet's own distance must stay within the bound, rounding included.
+        let bound = (bound - p).length() * (1.0 + 1e-9) + 1e-12;
+        let found = self.mesh.project_local_point_and_get_location_with_max_dist(p, false, bound);
+        let (projection, (facet, _)) =
+            found.unwrap_or_else(|| self.mesh.project_local_point_and_get_location(p, false));
+        Closest { point: from_vector(projection.point), inside: projection.is_inside, facet }
+    }
+
+    /// The largest of `a · v` over the vertices.
+    pub(crate) fn support(&self, a: &Vec3) -> f64 {
+        self.vertices.iter().map(|v| a.dot(v)).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    fn contains(&self, p: &Vec3) -> bool {
+        self.closest(p, 0).inside
+    }
+}
+
+impl Core {
+    /// The core and radius of a described shape, in the frame of what it belongs to; `Err` says what makes no sense in it.
+    pub(crate) fn of(placed: &PlacedShape) -> Result<(Self, f64), String> {
+        let X = placed.pose.pose()?;
+        let point = |p: [f64; 3]| X * Point3::from(p);
+        let positive = |x: f64, what: &str| {
+            if x > 0.0 && x < 1e6 {
+                Ok(x)
+            } else {
+                Err(format!("`{what}` = {x} must be positive and finite"))
+            }
+        };
+        Ok(match &placed.shape {
+            Shape::Sphere { radius } => (Self::Point(X.translation.vector), positive(*radius, "radius")?),
+            Shape::Capsule { from, to, radius } => {
+                let ends = (point(*from).coords, point(*to).coords);
+                if !ends.0.iter().chain(ends.1.iter()).all(|x| x.is_finite()) {
+                    return Err("a capsule's ends must be finite".into());
+                }
+                (Self::Segment(ends.0, ends.1), positive(*radius, "radius")?)
+            }
+            Shape::Box { size } => {
+                for &edge in size {
+                    positive(edge, "size")?;
+                }
+                (Self::Cuboid { X, half: Vec3::from(*size) / 2.0 }, 0.0)
+            }
+            Shape::HalfSpace { normal, offset } => {
+                let n = Vec3::from(*normal);
+                if !(n.norm().is_finite() && n.norm() > 1e-9 && offset.is_finite()) {
+                    return Err("a half-space's normal must be finite and not zero, its offset finite".into());
+                }
+                let n = X.rotation * n.normalize();
+                (Self::HalfSpace { n, offset: offset + n.dot(&X.translation.vector) }, 0.0)
+            }
+            Shape::Mesh(source) => {
+                if source.file.is_some() {
+                    return Err("the mesh is in another file; a plan must stand alone".into());
+                }
+                let mesh = regrasp_world::load_mesh(source, Path::new(""), "mesh");
+                let mesh = mesh.map_err(|error| error.to_string())?;
+                let vertices = mesh.vertices().iter().map(|v| point((*v).into()).coords).collect();
+                let moved = Mesh::new(vertices, mesh.facets().to_vec()).map_err(|e| e.to_string())?;
+                (Self::Mesh(Arc::new(Solid::new(&moved)?)), 0.0)
+            }
+        })
+    }
+
+    /// Centre and radius of a ball that holds the core; `None` for what is unbounded.
+    pub(crate) fn ball(&self) -> Option<(Vec3, f64)> {
+        match self {
+            Self::Point(p) => Some((*p, 0.0)),
+            Self::Segment(a, b) => Some(((a + b) / 2.0, (b - a).norm() / 2.0)),
+            Self::Cuboid { X, half } => Some((X.translation.vector, half.norm())),
+            Self::Mesh(solid) => {
+                let infinity = Vec3::repeat(f64::INFINITY);
+                let low = solid.vertices.iter().fold(infinity, |low, v| low.inf(v));
+                let high = solid.vertices.iter().fold(-infinity, |high, v| high.sup(v));
+                let center = (low + high) / 2.0;
+                Some((center, solid.vertices.iter().map(|v| (v - center).norm()).fold(0.0, f64::max)))
+            }
+            Self::HalfSpace { .. } => None,
+        }
+    }
+
+    fn rank(&self) -> u8 {
+        match self {
+            Self::Point(_) => 0,
+            Self::Segment(..) => 1,
+            Self::Cuboid { .. } => 2,
+            Self::Mesh(_) => 3,
+            Self::HalfSpace { .. } => 4,
+        }
+    }
+
+    /// Points whose convex hull is the core's; none for what is unbounded.
+    fn corners(&self) -> Vec<Vec3> {
+        match self {
+            Self::Point(p) => vec![*p],
+            Self::Segment(a, b) => vec![*a, *b],
+            Self::Cuboid { X, half } => {
+                let sign = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
+                let corner = |i: usize| Vec3::new(sign(i & 1), sign(i & 2), sign(i & 4)).component_mul(half);
+                (0..8).map(|i| (X * Point3::from(corner(i))).coords).collect()
+            }
+            Self::Mesh(solid) => solid.vertices.clone(),
+            Self::HalfSpace { .. } => vec![],
+        }
+    }
+}
+
+/// The distance of two cores given in frames A and B (m); not positive where they overlap.
+///
+/// Exact for surfaces; where `contained` is set, also that neither lies wholly inside the other is looked at (a mesh is only its surface to
+/// parry), which a motion that starts apart need not ask again.
+pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: bool) -> f64 {
+    if a.rank() > b.rank() {
+        return distance(b, X_HB, a, X_HA, contained);
+    }
+    let X_BA = X_HB.inv_mul(X_HA);
+    let moved = |p: &Vec3| (X_BA * Point3::from(*p)).coords;
+    match (a, b) {
+        (Core::HalfSpace { .. }, _) => 0.0, // Two half-spaces: they always meet.
+        (_, Core::HalfSpace { n, offset }) => {
+            a.corners().iter().map(|p| n.dot(&moved(p)) - offset).fold(f64::INFINITY, f64::min)
+        }
+        (Core::Point(p), _) => from_point(&moved(p), b),
+        (Core::Segment(p, q), Core::Segment(u, v)) => {
+            let (first, second) = (segment(&moved(p), &moved(q)), segment(u, v));
+            distance_segment_segment(&ParryPose::IDENTITY, &first, &second)
+        }
+        (Core::Segment(p, q), Core::Cuboid { X, half }) => {
+            let local = |p: &Vec3| X.inverse_transform_point(&Point3::from(moved(p))).coords;
+            apart(&segment(&local(p), &local(q)), &ParryPose::IDENTITY, &cuboid(half))
+        }
+        (Core::Segment(p, q), Core::Mesh(solid)) => from_segment(solid, &moved(p), &moved(q), contained).0,
+        (Core::Cuboid { X, half }, Core::Cuboid { X: X_other, half: other }) => {
+            let X = (X_BA * X).inv_mul(X_other);
+            apart(&cuboid(half), &parry_pose(&X), &cuboid(other))
+        }
+        (Core::Cuboid { X, half }, Core::Mesh(solid)) => {
+            let X = X_BA * X;
+            let inside = |v: &Vec3| {
+                let p = X.inverse_transform_point(&Point3::from(*v)).coords;
+                p.iter().zip(half.iter()).all(|(x, h)| x.abs() <= *h)
+            };
+            if contained && (inside(&solid.vertices[0]) || solid.contains(&X.translation.vector)) {
+                return 0.0;
+            }
+            apart(&cuboid(half), &parry_pose(&X.inverse()), &solid.mesh)
+        }
+        (Core::Mesh(first), Core::Mesh(second)) => {
+            let back = X_BA.inverse() * Point3::from(second.vertices[0]);
+            if contained && (second.contains(&moved(&first.vertices[0])) || first.contains(&back.coords)) {
+                return 0.0;
+            }
+            apart(&first.mesh, &parry_pose(&X_BA.inverse()), &second.mesh)
+        }
+        _ => unreachable!("the cores are in the order of their ranks"),
+    }
+}
+
+/// The distance (m) of a segment from a solid in the solid's frame, and the unit direction from the solid to the segment there; both zero
+/// where they overlap.
+pub(crate) fn from_segment(solid: &Solid, p: &Vec3, q: &Vec3, contained: bool) -> (f64, Vec3) {
+    if contained && solid.contains(p) {
+        return (0.0, Vec3::zeros());
+    }
+    let identity = ParryPose::IDENTITY;
+    match query::closest_points(&identity, &solid.mesh, &identity, &segment(p, q), f64::MAX) {
+        Ok(ClosestPoints::WithinMargin(on_solid, on_segment)) => {
+            let away = from_vector(on_segment - on_solid);
+            (away.norm(), away.try_normalize(0.0).unwrap_or_else(Vec3::zeros))
+        }
+        _ => (0.0, Vec3::zeros()),
+    }
+}
+
+/// The distance of a point from a core in its own frame; negative inside.
+fn from_point(p: &Vec3, core: &Core) -> f64 {
+    match core {
+        Core::Point(other) => (p - other).norm(),
+        Core::Segment(u, v) => segment(u, v).distance_to_local_point(vector(p), true),
+        Core::Cuboid { X, half } => {
+            let local = X.inverse_transform_point(&Point3::from(*p)).coords;
+            cuboid(half).distance_to_local_point(vector(&local), false)
+        }
+        Core::Mesh(solid) => {
+            let closest = solid.closest(p, 0);
+            (p - closest.point).norm() * if closest.inside { -1.0 } else { 1.0 }
+        }
+        Core::HalfSpace { n, offset } => n.dot(p) - offset,
+    }
+}
+
+/// The distance of two parry shapes; `X` is the second one's pose in the first one's frame.
+fn apart(first: &dyn ParryShape, X: &ParryPose, second: &dyn ParryShape) -> f64 {
+    // Unsupported pairs do not occur among these shapes; were one to, it would count as touching.
+    query::distance(&ParryPose::IDENTITY, first, X, second).map_or(0.0, |answer| answer.distance)
+}
+
+fn segment(a: &Vec3, b: &Vec3) -> Segment {
+    Segment::new(vector(a), vector(b))
+}
+
+fn cuboid(half: &Vec3) -> Cuboid {
+    Cuboid::new(vector(half))
+}
+
+fn vector(v: &Vec3) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
+
+fn from_vector(v: Vector) -> Vec3 {
+    Vec3::new(v.x, v.y, v.z)
+}
+
+fn parry_pose(X: &Pose) -> ParryPose {
+    let q = X.rotation.coords;
+    ParryPose::from_parts(vector(&X.translation.vector), Rot3::from_xyzw(q.x, q.y, q.z, q.w))
+}

@@ -1,0 +1,144 @@
+//! Internal forces: a proof of force closure that arithmetic can check, whoever found the force.
+//!
+//! A grasp is force closure exactly if its grasp map G has rank 6 and some contact forces y with G y = 0 lie strictly inside every cone.
+//! (J. Kerr and B. Roth, "Analysis of multifingered hands", IJRR 1986; NUMERICS of this project, section 1.)
+
+use nalgebra::{Cholesky, Matrix6, SMatrix, Vector6};
+use regrasp_api::{MAX_FINGERS, Vec3, cross_matrix};
+
+/// The least slack of a proof, for forces whose normal parts sum to 1: below, solvers and rounding decide, not the grasp.
+pub(crate) const LEAST_SLACK: f64 = 1e-8;
+/// The least singular value of the scaled grasp map that counts as rank 6.
+const LEAST_SINGULAR: f64 = 1e-6;
+
+/// One contact of a grasp, torques about the claimed centre and in units of force times the claimed length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contact {
+    /// The point, from the centre and divided by the length.
+    pub(crate) r: Vec3,
+    /// The inward unit normal.
+    pub(crate) n: Vec3,
+    /// Coefficient of friction.
+    pub(crate) mu: f64,
+    /// Torsional radius divided by the length.
+    pub(crate) gamma: f64,
+}
+
+impl Contact {
+    /// The wrench (force, torque) of a force in scaled coordinates.
+    fn wrench(&self, y: &Force) -> Vector6<f64> {
+        let force = self.n * y.normal + y.tangential * self.mu;
+        let torque = self.r.cross(&force) + self.n * (self.gamma * y.spin);
+        stack(&force, &torque)
+    }
+
+    /// Adds weight times the outer products of this contact's columns: normal with weight `w`, tangential and torsional with weight `u`.
+    fn accumulate(&self, sum: &mut Matrix6<f64>, w: f64, u: f64) {
+        let normal = stack(&self.n, &self.r.cross(&self.n));
+        let mu_squared = u * self.mu * self.mu;
+        *sum += normal * normal.transpose() * (w - mu_squared);
+        // J Jᵀ with J = [I; [r]×].
+        let mut J = SMatrix::<f64, 6, 3>::zeros();
+        J.fixed_rows_mut::<3>(0).fill_with_identity();
+        J.fixed_rows_mut::<3>(3).copy_from(&cross_matrix(&self.r));
+        *sum += J * J.transpose() * mu_squared;
+        let spin = stack(&Vec3::zeros(), &self.n);
+        *sum += spin * spin.transpose() * (u * self.gamma * self.gamma);
+    }
+}
+
+fn stack(force: &Vec3, torque: &Vec3) -> Vector6<f64> {
+    Vector6::new(force.x, force.y, force.z, torque.x, torque.y, torque.z)
+}
+
+/// The force of one contact in coordinates in which its cone is `normal ≥ |(tangential, spin)|`: tangential force divided by μ, torsion by γ.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Force {
+    pub(crate) normal: f64,
+    /// Orthogonal to the contact's normal.
+    pub(crate) tangential: Vec3,
+    pub(crate) spin: f64,
+}
+
+impl Force {
+    /// How far inside its cone the force is; negative outside.
+    fn slack(&self) -> f64 {
+        self.normal - self.tangential.norm().hypot(self.spin)
+    }
+}
+
+/// The forces of all contacts of a grasp.
+pub(crate) type Forces = [Force; MAX_FINGERS];
+
+/// Checked forces: balanced and strictly inside every cone, with normal parts that sum to 1, at a grasp of rank 6.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Proof {
+    pub(crate) forces: Forces,
+    /// The smallest slack.
+    pub(crate) slack: f64,
+}
+
+/// Tries to prove the grasp force closure with `forces` found somewhere else, such as at a grasp close by: takes them to this grasp's
+/// normals, balances them by the smallest correction, and checks.
+pub(crate) fn prove(contacts: &[Contact], forces: &Forces) -> Option<Proof> {
+    let mut forces = *forces;
+    let mut gram = Matrix6::zeros();
+    let mut residual = Vector6::zeros();
+    for (contact, force) in contacts.iter().zip(&mut forces) {
+        force.tangential -= contact.n * contact.n.dot(&force.tangential);
+        contact.accumulate(&mut gram, 1.0, 1.0);
+        residual += contact.wrench(force);
+    }
+    // G Gᵀ λ = G y; y - Gᵀ λ is the balanced force closest to y.
+    let factor = Cholesky::new(gram)?;
+    let lambda = factor.solve(&residual);
+    let (a, b) = (lambda.fixed_rows::<3>(0).into_owned(), lambda.fixed_rows::<3>(3).into_owned());
+    for (contact, force) in contacts.iter().zip(&mut forces) {
+        let v = a + b.cross(&contact.r);
+        let v_n = contact.n.dot(&v);
+        force.normal -= v_n;
+        force.tangential -= (v - contact.n * v_n) * contact.mu;
+        force.spin -= b.dot(&contact.n) * contact.gamma;
+    }
+    check(contacts, &forces, &factor)
+}
+
+/// The proof itself: residual, cones, rank.
+fn check(contacts: &[Contact], forces: &Forces, factor: &Cholesky<f64, nalgebra::U6>) -> Option<Proof> {
+    let total: f64 = forces[..contacts.len()].iter().map(|force| force.normal).sum();
+    if !(total > 0.0 && total.is_finite()) {
+        return None;
+    }
+    let mut proof = Proof { forces: *forces, slack: f64::INFINITY };
+    let mut residual = Vector6::zeros();
+    for (contact, force) in contacts.iter().zip(&mut proof.forces) {
+        force.normal /= total;
+        force.tangential /= total;
+        force.spin /= total;
+        proof.slack = proof.slack.min(force.slack());
+        residual += contact.wrench(force);
+    }
+    // 1/‖(G Gᵀ)⁻¹‖ ≤ λ_min(G Gᵀ): the smallest singular value is at least this.
+    let singular = 1.0 / factor.inverse().norm().sqrt();
+    // What balances the residual exactly is smaller than residual/singular, and must not leave the cones.
+    let inside = proof.slack >= LEAST_SLACK && residual.norm() <= 0.5 * singular * proof.slack;
+    (inside && singular >= LEAST_SINGULAR).then_some(proof)
+}
+
+/// A certified lower bound of the closure margin Q1 = min over |w| = 1 of max_i h_i(w), from one internal force.
+///
+/// For every unit w, Σ y_i h_i(w) (y_i the normal forces, which sum to 1) is at least the sum over the contacts of slack times the length of w on the
+/// contact's tangential and torsional columns, since the force may move by its slack without leaving the cone's slice. Hence Q1² is at least
+/// the smallest eigenvalue of Σ slack² (those columns' outer products). The normal columns count too where the force moves by slack/√2 in
+/// all directions, which takes up to that much more normal force. The larger of the two bounds holds.
+pub(crate) fn margin(contacts: &[Contact], proof: &Proof) -> f64 {
+    let (mut tangential, mut all, mut more) = (Matrix6::zeros(), Matrix6::zeros(), 1.0);
+    for (contact, force) in contacts.iter().zip(&proof.forces) {
+        let slack = force.slack();
+        contact.accumulate(&mut tangential, 0.0, slack * slack);
+        contact.accumulate(&mut all, slack * slack / 2.0, slack * slack / 2.0);
+        more += slack / std::f64::consts::SQRT_2;
+    }
+    let smallest = |matrix: Matrix6<f64>| matrix.symmetric_eigenvalues().min().max(0.0).sqrt();
+    smallest(tangential).max(smallest(all) / more)
+}

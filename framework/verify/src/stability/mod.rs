@@ -1,0 +1,151 @@
+//! Whether the fingers that hold the object hold it stably, at every sample of the plan.
+
+mod force;
+mod socp;
+
+use crate::contact_checks::Touch;
+use crate::track::{Leg, SAMPLES};
+use crate::verdict::{Check, Gauge, Side};
+use force::{Contact, Forces, LEAST_SLACK, Proof};
+use regrasp_api::{MAX_FINGERS, Vec3};
+use regrasp_plan::{Claims, ConeClaim, Extreme, Place};
+
+/// Grasps not proved stable after which no more are looked at: the plan is refused anyway.
+const MOST_FAILURES: usize = 100;
+/// Grasps of smallest margin for which the best force is sought again: each one's bound can only rise.
+const MOST_REFINEMENTS: usize = 24;
+
+/// Follows the grasp along the plan.
+pub(crate) struct StabilityCheck {
+    gauge: Gauge,
+    cone: Option<ConeClaim>,
+    center_O: Vec3,
+    length: f64,
+    /// The last internal force, and whether it belongs to the same contacts.
+    carried: Option<Forces>,
+    failures: usize,
+    /// Margins' lower bounds at the plan's states, for refinement at the end.
+    margins: Vec<Margin>,
+}
+
+/// The certified margin of one grasp.
+struct Margin {
+    contacts: Vec<Contact>,
+    lower: f64,
+    place: Place,
+}
+
+impl StabilityCheck {
+    pub(crate) fn new(claims: &Claims) -> Self {
+        let mut gauge = Gauge::new("stability", "force", Side::Above, LEAST_SLACK);
+        let valid =
+            |cone: &ConeClaim| cone.mu >= 0.0 && cone.gamma >= 0.0 && (cone.mu + cone.gamma).is_finite();
+        let cone = claims.contact.cone.filter(valid);
+        if claims.contact.cone.is_none() {
+            gauge.remark("not independently checked: the plan claims contacts whose cones are not elliptic");
+        } else if cone.is_none() {
+            gauge.note(f64::NAN, || Place {
+                note: Some("the claimed cone has no meaning".into()),
+                ..Default::default()
+            });
+        }
+        Self {
+            gauge,
+            cone,
+            center_O: claims.margin.center_O.into(),
+            length: claims.margin.length,
+            carried: None,
+            failures: 0,
+            margins: Vec::new(),
+        }
+    }
+
+    /// Starts a segment: the contacts change, so no force is carried over.
+    pub(crate) fn start(&mut self) {
+        self.carried = None;
+    }
+
+    /// Takes in one sample, with where the fingers touch that hold in this segment.
+    ///
+    /// `moving` does not hold at all while it is lifted, its contacts at both ends included.
+    pub(crate) fn sample(
+        &mut self,
+        leg: &Leg<'_>,
+        state: usize,
+        sample: usize,
+        touches: &[Option<Touch>; MAX_FINGERS],
+    ) {
+        let Some(cone) = self.cone else { return };
+        if self.failures >= MOST_FAILURES {
+            return;
+        }
+        // Contacts may spin in a transfer, and a spinning contact transmits no torsion.
+        let gamma = if leg.moving.is_some() { cone.gamma } else { 0.0 };
+        let holding = touches.iter().enumerate().filter(|&(finger, _)| leg.moving != Some(finger));
+        let contacts: Vec<Contact> = holding
+            .filter_map(|(_, touch)| *touch)
+            .map(|touch| Contact {
+                r: (touch.p_OC - self.center_O) / self.length,
+                n: -touch.n_O,
+                mu: cone.mu,
+                gamma: gamma / self.length,
+            })
+            .collect();
+        let place = || leg.between(state, sample as f64 / SAMPLES as f64);
+        match self.prove(&contacts) {
+            Ok(proof) => {
+                self.carried = Some(proof.forces);
+                self.gauge.note(proof.slack, place);
+                if sample.is_multiple_of(SAMPLES) {
+                    let lower = force::margin(&contacts, &proof);
+                    self.margins.push(Margin { contacts, lower, place: leg.at(state + sample / SAMPLES) });
+                }
+            }
+            Err(slack) => {
+                self.carried = None;
+                self.failures += 1;
+                self.gauge.note(slack, place);
+                self.margins.push(Margin { contacts: vec![], lower: 0.0, place: place() });
+            }
+        }
+    }
+
+    /// A proof for the grasp from the carried force, else from the solver's; `Err` gives the slack that the solver could not bring above the
+    /// least one.
+    fn prove(&self, contacts: &[Contact]) -> Result<Proof, f64> {
+        if let Some(forces) = &self.carried
+            && let Some(proof) = force::prove(contacts, forces)
+        {
+            return Ok(proof);
+        }
+        best(contacts)
+    }
+
+    /// The smallest margin, for the certificate: bounds that a carried force left loose are sharpened with the best one.
+    pub(crate) fn extreme(&mut self) -> Option<Extreme> {
+        for _ in 0..MOST_REFINEMENTS {
+            let worst = self.margins.iter_mut().min_by(|a, b| a.lower.total_cmp(&b.lower))?;
+            let refined = best(&worst.contacts).map_or(0.0, |proof| force::margin(&worst.contacts, &proof));
+            if refined <= worst.lower * (1.0 + 1e-9) {
+                break;
+            }
+            worst.lower = refined;
+        }
+        let worst = self.margins.iter().min_by(|a, b| a.lower.total_cmp(&b.lower))?;
+        Some(Extreme { value: worst.lower, place: worst.place.clone() })
+    }
+
+    pub(crate) fn check(self) -> Check {
+        self.gauge.check()
+    }
+}
+
+/// The solver's best force, checked.
+fn best(contacts: &[Contact]) -> Result<Proof, f64> {
+    let Some((forces, slack)) = socp::best_forces(contacts) else { return Err(f64::NEG_INFINITY) };
+    // What the solver claims beyond what can be proved counts as nothing.
+    force::prove(contacts, &forces).ok_or(slack.min(0.0))
+}
+
+#[cfg(test)]
+mod tests;

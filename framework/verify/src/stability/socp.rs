@@ -1,0 +1,105 @@
+//! The best internal force of a grasp, found by an interior-point solver.
+
+use super::force::{Contact, Force, Forces};
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use regrasp_api::{MAX_FINGERS, Vec3, any_orthogonal};
+
+/// Variables of one contact: normal, two tangential, torsional.
+const OF_CONTACT: usize = 4;
+
+/// Maximises the slack t over all forces y with G y = 0, Σ normal = 1 and normal - t ≥ |(tangential, torsional)| for each contact, by Clarabel
+/// (Goulart and Chen, "Clarabel: an interior-point solver for conic programs with quadratic objectives", 2024).
+///
+/// Returns the forces and t, which still have to be checked; `None` where the solver finds none.
+pub(crate) fn best_forces(contacts: &[Contact]) -> Option<(Forces, f64)> {
+    let variables = OF_CONTACT * contacts.len() + 1;
+    let tangents: Vec<[Vec3; 2]> = contacts.iter().map(tangents).collect();
+    let mut problem = Problem::new(variables);
+    problem.balance(contacts, &tangents);
+    problem.cones(contacts.len());
+    let solution = problem.solve()?;
+    let mut forces = [Force::default(); MAX_FINGERS];
+    for (i, force) in forces.iter_mut().take(contacts.len()).enumerate() {
+        let y = &solution[OF_CONTACT * i..];
+        let tangential = tangents[i][0] * y[1] + tangents[i][1] * y[2];
+        *force = Force { normal: y[0], tangential, spin: y[3] };
+    }
+    Some((forces, solution[variables - 1]))
+}
+
+fn tangents(contact: &Contact) -> [Vec3; 2] {
+    let first = any_orthogonal(&contact.n);
+    [first, contact.n.cross(&first)]
+}
+
+/// min qᵀx subject to A x + s = b, s in the cones.
+struct Problem {
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+    b: Vec<f64>,
+    cones: Vec<SupportedConeT<f64>>,
+    variables: usize,
+}
+
+impl Problem {
+    fn new(variables: usize) -> Self {
+        Self { rows: vec![], columns: vec![], values: vec![], b: vec![], cones: vec![], variables }
+    }
+
+    fn set(&mut self, row: usize, column: usize, value: f64) {
+        if value != 0.0 {
+            self.rows.push(row);
+            self.columns.push(column);
+            self.values.push(value);
+        }
+    }
+
+    /// Rows 0 to 5: balance of force and torque; row 6: the normal forces sum to 1.
+    fn balance(&mut self, contacts: &[Contact], tangents: &[[Vec3; 2]]) {
+        for (i, (contact, tangents)) in contacts.iter().zip(tangents).enumerate() {
+            let forces = [contact.n, tangents[0] * contact.mu, tangents[1] * contact.mu, Vec3::zeros()];
+            for (k, force) in forces.iter().enumerate() {
+                let mut torque = contact.r.cross(force);
+                if k == 3 {
+                    torque = contact.n * contact.gamma;
+                }
+                for axis in 0..3 {
+                    self.set(axis, OF_CONTACT * i + k, force[axis]);
+                    self.set(3 + axis, OF_CONTACT * i + k, torque[axis]);
+                }
+            }
+            self.set(6, OF_CONTACT * i, 1.0);
+        }
+        self.b.extend([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        self.cones.push(SupportedConeT::ZeroConeT(7));
+    }
+
+    /// For each contact: (normal - t, tangential, torsional) in the second-order cone.
+    fn cones(&mut self, count: usize) {
+        let t = self.variables - 1;
+        for i in 0..count {
+            let row = self.b.len();
+            self.set(row, t, 1.0);
+            for k in 0..OF_CONTACT {
+                self.set(row + k, OF_CONTACT * i + k, -1.0);
+            }
+            self.b.extend([0.0; OF_CONTACT]);
+            self.cones.push(SupportedConeT::SecondOrderConeT(OF_CONTACT));
+        }
+    }
+
+    fn solve(self) -> Option<Vec<f64>> {
+        let n = self.variables;
+        let P = CscMatrix::zeros((n, n));
+        let A = CscMatrix::new_from_triplets(self.b.len(), n, self.rows, self.columns, self.values);
+        let mut q = vec![0.0; n];
+        q[n - 1] = -1.0;
+        let settings = DefaultSettings { verbose: false, ..Default::default() };
+        let mut solver = DefaultSolver::new(&P, &q, &A, &self.b, &self.cones, settings).ok()?;
+        solver.solve();
+        let good = matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
+        (good && solver.solution.x.iter().all(|x| x.is_finite())).then_some(solver.solution.x)
+    }
+}
