@@ -1,1 +1,56 @@
-fn main() {}
+//! The command line.
+//!
+//! Exit codes: 0 done; 2 bad input; 3 no plan within the budget; 4 a plan that does not verify; 130 interrupted.
+
+mod args;
+mod failure;
+mod overrides;
+mod plan;
+mod plugins;
+mod progress;
+mod report;
+mod scenarios;
+mod schema;
+mod table;
+mod verify;
+mod watch;
+
+use args::{Arguments, Command};
+use clap::Parser;
+use failure::Failure;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+// The library links the built-in plugins; a program that did not name it would have none.
+use regrasp as _;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let done = match &arguments.command {
+        Command::Plan(args) => plan::run(args),
+        Command::Verify(args) => verify::run(args),
+        Command::Plugins(args) => plugins::run(args),
+        Command::Scenarios(args) => scenarios::run(args),
+        Command::Schema(args) => schema::run(args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.exit(),
+    }
+}
+
+/// Writes to standard output; a reader that has gone away, as in `regrasp plugins | head`, is no failure.
+fn say(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::bad_input(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a value as JSON to standard output.
+fn say_json(value: &serde_json::Value) -> Result<(), Failure> {
+    say(&format!("{value:#}\n"))
+}

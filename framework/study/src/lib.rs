@@ -1,3 +1,6 @@
-//! Scenario files, and what is done with many of them.
+//! Scenario files, and what is done with them: building hand, object and plugins, planning, verifying.
 
+mod run;
 pub mod scenario;
+
+pub use run::*;

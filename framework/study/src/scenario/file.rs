@@ -142,3 +142,9 @@ pub fn schema() -> String {
     let schema = schemars::schema_for!(ScenarioFile).to_value();
     serde_json::to_string_pretty(&schema).expect("a JSON value is JSON")
 }
+
+/// The JSON schema of hand files.
+pub fn hand_schema() -> String {
+    let schema = schemars::schema_for!(regrasp_api::HandDescription).to_value();
+    serde_json::to_string_pretty(&schema).expect("a JSON value is JSON")
+}

@@ -19,6 +19,7 @@ use regrasp_api::{HandDescription, ObjectModel, Problem, Slot};
 use regrasp_host::{Choices, HostError, Registry, Step, near};
 use regrasp_world::{ChainHand, load_object};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A checked scenario: it stands alone, with no file left to read.
 pub struct Scenario {
@@ -33,7 +34,7 @@ pub struct Scenario {
     /// The problem as plain data, meshes inside.
     pub problem: Problem,
     /// The problem's hand.
-    pub hand: ChainHand,
+    pub hand: Arc<ChainHand>,
     /// The problem's object.
     pub object: ObjectModel,
     /// The plugins; those that the file names or sets have full ids and complete settings.
@@ -45,6 +46,11 @@ impl Scenario {
     /// The place of a key in the scenario's file, for errors that are found later.
     pub fn place(&self, key: &str) -> Box<Place> {
         self.document.place(&key_path(key))
+    }
+
+    /// The refusal of something that was found wrong later; where its message names a key, with the place of that.
+    pub fn refuse(&self, error: &impl ToString) -> ScenarioError {
+        refused(&self.document, error)
     }
 }
 
@@ -85,7 +91,7 @@ pub fn from_text(
         source: content.source,
         paper: content.paper,
         problem,
-        hand,
+        hand: Arc::new(hand),
         object,
         choices,
         document,

@@ -1,0 +1,155 @@
+//! One run: from a scenario to a plan that was verified.
+
+mod error;
+mod plan_file;
+
+pub use error::*;
+
+use crate::scenario::Scenario;
+use regrasp_api::{Hand, Interrupt, Parts};
+use regrasp_host::{Choices, PluginSet, Registry};
+use regrasp_plan::{Plan, StoppedBy};
+use regrasp_planner::{Clock, Drivers, Outcome, Progress, Request};
+use regrasp_verify::Verdict;
+use regrasp_world::SceneClearance;
+use std::path::Path;
+
+/// An interrupt that knows what it was.
+pub trait Stop: Interrupt {
+    /// What stopped the run; asked only after it was interrupted.
+    fn cause(&self) -> StoppedBy;
+}
+
+/// Lets every run come to its own end.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NeverStops;
+
+impl Interrupt for NeverStops {
+    fn interrupted(&self) -> bool {
+        false
+    }
+}
+
+impl Stop for NeverStops {
+    fn cause(&self) -> StoppedBy {
+        StoppedBy::Interrupt
+    }
+}
+
+/// What a run needs besides the scenario.
+#[derive(Clone, Copy)]
+pub struct RunOptions<'a> {
+    /// Seed of all random streams.
+    pub seed: u64,
+    /// How many threads compute; the plan does not depend on it.
+    pub threads: usize,
+    /// Stops the run from outside.
+    pub stop: &'a dyn Stop,
+    /// Times the phases.
+    pub clock: &'a dyn Clock,
+    /// Told how far the run is.
+    pub progress: &'a dyn Progress,
+}
+
+/// What a run gives.
+pub struct Run {
+    /// The planner's own answer.
+    pub outcome: Outcome,
+    /// The plan as its file holds it, certificate included; absent where no goal was reached.
+    pub plan: Option<Plan>,
+    /// The verifier's answer on the plan.
+    pub verdict: Option<Verdict>,
+    /// Seconds for planning alone: start and goal grasps, search, smoothing, timing.
+    pub planning_s: f64,
+    /// Seconds for the verification.
+    pub verification_s: f64,
+}
+
+impl Run {
+    /// Whether there is a plan and the verifier accepts it; a plan that reaches only some goals is judged by what it does.
+    pub fn is_verified(&self) -> bool {
+        self.verdict.as_ref().is_some_and(|verdict| match self.outcome.status {
+            regrasp_planner::Status::Solved => verdict.valid,
+            _ => verdict.is_sound(),
+        })
+    }
+}
+
+/// A scenario with its plugins built, ready to be planned with any seed.
+pub struct Setup<'a> {
+    scenario: &'a Scenario,
+    choices: Choices,
+    clearance: SceneClearance,
+    plugins: PluginSet,
+}
+
+impl<'a> Setup<'a> {
+    /// Builds collision and plugins; `choices` as the scenario gives them or changed since.
+    pub fn new(scenario: &'a Scenario, choices: &Choices, registry: &Registry) -> Result<Self, RunError> {
+        let choices = choices.resolve(registry)?;
+        let limits = &scenario.problem.limits;
+        let clearance = SceneClearance::new(
+            scenario.hand.clone(),
+            &scenario.object,
+            &scenario.problem.obstacle,
+            limits.tolerances.clearance + limits.resolution.clearance,
+            // The scenario's meshes are given in place: there is no file to look for.
+            Path::new(""),
+        )
+        .map_err(|error| scenario.refuse(&error))?;
+        let parts = Parts { object: &scenario.object, hand: scenario.hand.as_ref() };
+        let plugins = PluginSet::build(registry, &choices, &parts)?;
+        Ok(Self { scenario, choices, clearance, plugins })
+    }
+
+    /// The plugins with full ids and complete settings.
+    pub fn choices(&self) -> &Choices {
+        &self.choices
+    }
+
+    /// Plans and verifies.
+    pub fn run(&self, options: &RunOptions<'_>) -> Result<Run, RunError> {
+        let begin = options.clock.seconds();
+        let outcome = self.solve(options)?;
+        let planned = options.clock.seconds();
+        let (mut plan, mut verdict) = (None, None);
+        if outcome.goals_reached > 0 {
+            let mut file = self.plan_file(&outcome, options)?;
+            let judged = regrasp_verify::verify(&file);
+            file.certificate = judged.certificate.clone();
+            (plan, verdict) = (Some(file), Some(judged));
+        }
+        let verified = options.clock.seconds();
+        Ok(Run { outcome, plan, verdict, planning_s: planned - begin, verification_s: verified - planned })
+    }
+
+    fn solve(&self, options: &RunOptions<'_>) -> Result<Outcome, RunError> {
+        let plugins = &self.plugins;
+        let request = Request {
+            problem: &self.scenario.problem,
+            hand: self.scenario.hand.as_ref(),
+            clearance: &self.clearance,
+            object: &self.scenario.object,
+            contact_model: plugins.contact_model.as_ref(),
+            stability: plugins.stability.as_ref(),
+            surface: plugins.surface.as_ref(),
+            drivers: Drivers {
+                sampler: plugins.sampler.as_ref(),
+                grasp: plugins.grasp_planner.as_ref(),
+                transfer: plugins.transfer_planner.as_ref(),
+                regrasp: plugins.regrasp_planner.as_ref(),
+                strategy: plugins.strategy.as_ref(),
+            },
+            seed: options.seed,
+            threads: options.threads,
+            interrupt: options.stop,
+            clock: options.clock,
+            progress: options.progress,
+        };
+        regrasp_planner::solve(&request).map_err(|error| RunError::of_planner(self.scenario, error))
+    }
+
+    fn hand(&self) -> &dyn Hand {
+        self.scenario.hand.as_ref()
+    }
+}

@@ -1,0 +1,147 @@
+//! The command line's form.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Plans how a multi-fingered hand moves an object from a start to goals, by rolling it and by regrasping, and verifies the plan.
+#[derive(Debug, Parser)]
+#[command(
+    name = "regrasp",
+    version,
+    after_help = "Exit codes: 0 done; 2 bad input; 3 no plan within the budget; 4 a plan that does not verify; 130 interrupted.\n\n\
+                  Example:\n  regrasp plan sphere -o plan.json && regrasp verify plan.json"
+)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Plan(PlanArgs),
+    Verify(VerifyArgs),
+    Plugins(PluginsArgs),
+    Scenarios(ScenariosArgs),
+    Schema(SchemaArgs),
+}
+
+/// Plan a scenario, verify the plan, and write it to a file.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Ctrl-C and the time limit end the search and keep what was found: with `-o plan.json`, a motion that reaches some of the goals and \
+verifies goes to `plan.partial.json`. A plan that does not verify is never written under the wished name but to `plan.rejected.json`.\n\n\
+Examples:\n  regrasp plan sphere\n  regrasp plan my-problem.toml --seed 7 -o plan.json\n  \
+regrasp plan cubic --use stability-test=socp --set graph-strategy.bias=0.3 --rejections")]
+pub struct PlanArgs {
+    /// A scenario file, or the name of a built-in scenario.
+    pub scenario: String,
+    /// Seed of all random choices: the same seed gives the same plan, on any number of threads.
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub seed: u64,
+    /// Fill a slot with another plugin; can be repeated.
+    #[arg(long = "use", value_name = "SLOT=ID")]
+    pub uses: Vec<String>,
+    /// Change a setting of the plugin in a slot; the value is TOML; can be repeated.
+    #[arg(long = "set", value_name = "SLOT.KEY=VALUE")]
+    pub sets: Vec<String>,
+    /// Stop after this many seconds.
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub time_limit: Option<f64>,
+    /// Generate at most this many nodes for each goal.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    pub max_nodes: Option<u64>,
+    /// Compute with this many threads.
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: u16,
+    /// Write the plan to this file.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    pub json: bool,
+    /// Print how often each plugin said no, by cause.
+    #[arg(short = 'v', long)]
+    pub rejections: bool,
+}
+
+/// Check a plan file with the independent verifier.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  regrasp verify plan.json")]
+pub struct VerifyArgs {
+    /// A plan file.
+    pub plan: PathBuf,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// List the plugins, or show one with its settings.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  regrasp plugins\n  regrasp plugins sampler\n  regrasp plugins stability-test/force-closure"
+)]
+pub struct PluginsArgs {
+    /// A role, to list its plugins; or a plugin's id, to show its settings.
+    #[arg(value_name = "ROLE|ID")]
+    pub what: Option<String>,
+    /// Print a JSON list instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// List the built-in scenarios, or print the file of one, as a start for your own.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  regrasp scenarios\n  regrasp scenarios sphere > my-problem.toml\n  regrasp scenarios four-finger > my-hand.toml"
+)]
+pub struct ScenariosArgs {
+    /// A built-in scenario or hand, to print its file.
+    pub name: Option<String>,
+    /// Print a JSON list instead of text.
+    #[arg(long, conflicts_with = "name")]
+    pub json: bool,
+}
+
+/// Print the JSON schema of scenario files or of hand files.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  regrasp schema > scenario.schema.json")]
+pub struct SchemaArgs {
+    /// Which kind of file.
+    #[arg(value_enum, default_value_t = Kind::Scenario)]
+    pub kind: Kind,
+}
+
+/// The kinds of files that have a schema.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Kind {
+    /// Scenario files.
+    Scenario,
+    /// Hand files.
+    Hand,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (0.001..=1e7).contains(&seconds) => Ok(seconds),
+        _ => Err("it must be a number of seconds in 0.001..=10000000".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_form_is_consistent() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn seconds_are_positive_and_finite() {
+        assert_eq!(seconds("1.5"), Ok(1.5));
+        for bad in ["0", "-1", "nan", "inf", "soon"] {
+            assert!(seconds(bad).is_err(), "{bad}");
+        }
+    }
+}

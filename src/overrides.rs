@@ -1,0 +1,109 @@
+//! `--use`, `--set` and the budgets: what the command line changes in a scenario.
+
+use crate::Failure;
+use crate::args::PlanArgs;
+use regrasp::api::Slot;
+use regrasp::host::{Choices, HostError, slot_by_name};
+use regrasp::study::scenario::Scenario;
+use serde_json::Value;
+
+/// Applies the changes; `--use` before `--set`, whatever their order.
+pub fn apply(scenario: &mut Scenario, args: &PlanArgs) -> Result<(), Failure> {
+    for text in &args.uses {
+        use_plugin(&mut scenario.choices, text)?;
+    }
+    for text in &args.sets {
+        set(&mut scenario.choices, text)?;
+    }
+    let budget = &mut scenario.problem.limits.budget;
+    if let Some(max_nodes) = args.max_nodes {
+        budget.max_nodes = max_nodes as usize;
+    }
+    budget.time_limit = args.time_limit.or(budget.time_limit);
+    Ok(())
+}
+
+fn use_plugin(choices: &mut Choices, text: &str) -> Result<(), Failure> {
+    let Some((slot, id)) = text.split_once('=') else {
+        return Err(Failure::bad_input(format!("`--use {text}` is not of the form SLOT=ID")));
+    };
+    let slot = slot_by_name(slot).map_err(|error| refuse("use", text, &error))?;
+    choices.use_plugin(slot, id);
+    Ok(())
+}
+
+fn set(choices: &mut Choices, text: &str) -> Result<(), Failure> {
+    let form = || Failure::bad_input(format!("`--set {text}` is not of the form SLOT.KEY=VALUE"));
+    let (path, value) = text.split_once('=').ok_or_else(form)?;
+    let (slot, key) = split_slot(path).map_err(|error| refuse("set", text, &error))?.ok_or_else(form)?;
+    let value = parse(value).map_err(|reason| Failure::bad_input(format!("`--set {text}`: {reason}")))?;
+    choices.set(slot, key, value);
+    Ok(())
+}
+
+/// Slot and key of `local-planner.transfer.max_slip`; a slot's own name may have a dot in it.
+fn split_slot(path: &str) -> Result<Option<(Slot, &str)>, HostError> {
+    let key_of = |slot: Slot| Some((slot, path.strip_prefix(slot.name())?.strip_prefix('.')?));
+    match Slot::ALL.into_iter().find_map(key_of) {
+        Some((_, "")) => Ok(None),
+        Some(found) => Ok(Some(found)),
+        None => match path.rsplit_once('.') {
+            Some((slot, _)) => slot_by_name(slot).map(|_| None),
+            None => Ok(None),
+        },
+    }
+}
+
+/// A value as TOML reads it; what is no TOML value is taken as a text, so that quotes can be left away.
+fn parse(text: &str) -> Result<Value, String> {
+    let table: Result<toml::Table, _> = toml::from_str(&format!("value = {text}"));
+    let value = match table {
+        Ok(mut table) => table.remove("value").unwrap_or(toml::Value::String(text.to_owned())),
+        Err(_) => toml::Value::String(text.to_owned()),
+    };
+    if let toml::Value::Float(number) = value
+        && !number.is_finite()
+    {
+        return Err(format!("{text} is outside the finite numbers"));
+    }
+    serde_json::to_value(value).map_err(|error| error.to_string())
+}
+
+fn refuse(option: &str, text: &str, error: &HostError) -> Failure {
+    Failure::bad_input(format!("`--{option} {text}`: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn values_are_toml_or_plain_text() {
+        assert_eq!(parse("3"), Ok(json!(3)));
+        assert_eq!(parse("0.5"), Ok(json!(0.5)));
+        assert_eq!(parse("[1, 2]"), Ok(json!([1, 2])));
+        assert_eq!(parse("true"), Ok(json!(true)));
+        assert_eq!(parse("some-word"), Ok(json!("some-word")));
+        assert!(parse("nan").is_err() && parse("inf").is_err());
+    }
+
+    #[test]
+    fn slots_with_dots_are_told_from_keys_with_dots() {
+        assert_eq!(split_slot("sampler.tries"), Ok(Some((Slot::Sampler, "tries"))));
+        assert_eq!(split_slot("local-planner.regrasp.a.b"), Ok(Some((Slot::RegraspPlanner, "a.b"))));
+        assert_eq!(split_slot("sampler"), Ok(None));
+        assert_eq!(split_slot("sampler."), Ok(None));
+        assert!(split_slot("samler.tries").unwrap_err().to_string().contains("did you mean `sampler`"));
+    }
+
+    #[test]
+    fn words_of_the_wrong_form_are_refused() {
+        let mut choices = Choices::default();
+        assert!(use_plugin(&mut choices, "sampler").is_err());
+        assert!(set(&mut choices, "sampler.tries").is_err());
+        assert!(set(&mut choices, "sampler.tries=nan").is_err());
+        assert!(set(&mut choices, "sampler.tries=4").is_ok());
+        assert_eq!(choices.choice(Slot::Sampler).settings["tries"], json!(4));
+    }
+}

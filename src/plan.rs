@@ -1,0 +1,111 @@
+//! `regrasp plan`
+
+use crate::args::PlanArgs;
+use crate::progress::Line;
+use crate::watch::Watch;
+use crate::{Failure, overrides, report, say, say_json};
+use regrasp::host::Registry;
+use regrasp::plan::{Plan, StoppedBy};
+use regrasp::planner::Status;
+use regrasp::study::{Run, RunOptions, Setup, scenario};
+use std::path::{Path, PathBuf};
+
+pub fn run(args: &PlanArgs) -> Result<(), Failure> {
+    let registry = Registry::linked().map_err(Failure::bad_input)?;
+    let mut scenario = scenario::load(&args.scenario, &registry).map_err(Failure::bad_input)?;
+    overrides::apply(&mut scenario, args)?;
+    check_output(args.output.as_deref())?;
+    let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::bad_input)?;
+    let watch = Watch::start(scenario.problem.limits.budget.time_limit);
+    let line = Line::new();
+    let (seed, threads) = (args.seed, usize::from(args.threads));
+    let options = RunOptions { seed, threads, stop: &watch, clock: &watch, progress: &line };
+    let ran = setup.run(&options);
+    line.finish();
+    let ran = ran.map_err(Failure::bad_input)?;
+    let saved = save(args.output.as_deref(), &ran)?;
+    let summary = report::Summary {
+        scenario: &scenario,
+        choices: setup.choices(),
+        run: &ran,
+        options: &options,
+        saved: saved.as_deref(),
+    };
+    if args.json {
+        say_json(&summary.json())?;
+    } else {
+        say(&summary.text())?;
+        if args.rejections && ran.outcome.status == Status::Solved {
+            say(&report::rejections(&ran.outcome.statistics))?;
+        }
+    }
+    ending(&ran, &summary)
+}
+
+/// Refuses a place where no file can be written before any work is done.
+fn check_output(output: Option<&Path>) -> Result<(), Failure> {
+    let Some(path) = output else { return Ok(()) };
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let refuse = |why: &str| Err(Failure::bad_input(format!("cannot write to `{}`: {why}", path.display())));
+    if path.is_dir() {
+        return refuse("it is a folder; give a file name");
+    }
+    if folder.is_dir() { Ok(()) } else { refuse("its folder does not exist; create it first") }
+}
+
+/// Writes the plan: under the wished name only if it is complete and verified.
+fn save(output: Option<&Path>, run: &Run) -> Result<Option<PathBuf>, Failure> {
+    let (Some(wished), Some(plan)) = (output, &run.plan) else { return Ok(None) };
+    let path = match (run.outcome.status, run.is_verified()) {
+        (Status::Solved, true) => wished.to_owned(),
+        (_, true) => beside(wished, "partial"),
+        (_, false) => beside(wished, "rejected"),
+    };
+    write(&path, plan)?;
+    Ok(Some(path))
+}
+
+fn write(path: &Path, plan: &Plan) -> Result<(), Failure> {
+    regrasp::plan::write(path, plan).map_err(Failure::bad_input)
+}
+
+/// `plan.json` becomes `plan.partial.json`.
+fn beside(path: &Path, word: &str) -> PathBuf {
+    match path.extension() {
+        Some(extension) => path.with_extension(format!("{word}.{}", extension.to_string_lossy())),
+        None => path.with_extension(word),
+    }
+}
+
+/// What the exit code says.
+fn ending(run: &Run, summary: &report::Summary<'_>) -> Result<(), Failure> {
+    if run.plan.is_some() && !run.is_verified() {
+        return Err(Failure::not_verified(summary.why_not_verified()));
+    }
+    match (run.outcome.status, summary.stopped_by()) {
+        (Status::Solved, _) => Ok(()),
+        (_, Some(StoppedBy::Interrupt)) => Err(Failure::interrupted(summary.why_no_plan())),
+        _ => Err(Failure::no_plan(summary.why_no_plan())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plans_that_are_not_what_was_wished_get_another_name() {
+        assert_eq!(beside(Path::new("a/plan.json"), "partial"), Path::new("a/plan.partial.json"));
+        assert_eq!(beside(Path::new("plan"), "rejected"), Path::new("plan.rejected"));
+    }
+
+    #[test]
+    fn places_where_nothing_can_be_written_are_refused_early() {
+        assert!(check_output(Some(Path::new("no-such-folder/plan.json"))).is_err());
+        assert!(check_output(Some(Path::new("."))).is_err());
+        assert!(check_output(Some(Path::new("plan.json"))).is_ok() && check_output(None).is_ok());
+    }
+}

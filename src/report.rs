@@ -1,0 +1,234 @@
+//! What `plan` says about a run.
+
+use crate::table::Table;
+use crate::verify::{check_table, place_text};
+use regrasp::api::{Reason, Slot};
+use regrasp::host::Choices;
+use regrasp::plan::{Extreme, Plan, Statistics, StoppedBy};
+use regrasp::planner::{Status, Stuck};
+use regrasp::study::scenario::Scenario;
+use regrasp::study::{Run, RunOptions};
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+/// A run with everything that a report about it mentions.
+pub struct Summary<'a> {
+    pub scenario: &'a Scenario,
+    pub choices: &'a Choices,
+    pub run: &'a Run,
+    pub options: &'a RunOptions<'a>,
+    pub saved: Option<&'a Path>,
+}
+
+impl Summary<'_> {
+    /// What ended the search before it was done.
+    pub fn stopped_by(&self) -> Option<StoppedBy> {
+        match self.run.outcome.status {
+            Status::Solved => None,
+            Status::NoPlan => Some(StoppedBy::MaxNodes),
+            Status::Interrupted => Some(self.options.stop.cause()),
+        }
+    }
+
+    /// The one JSON object of `plan --json`.
+    pub fn json(&self) -> Value {
+        let (run, statistics) = (self.run, &self.run.outcome.statistics);
+        let motion = &run.outcome.motion;
+        json!({
+            "scenario": self.scenario.name,
+            "status": run.outcome.status,
+            "verified": run.is_verified(),
+            "stopped_by": self.stopped_by(),
+            "seed": self.options.seed,
+            "threads": self.options.threads,
+            "goals": self.scenario.problem.goal.len(),
+            "goals_reached": run.outcome.goals_reached,
+            "time_s": run.planning_s,
+            "verification_s": run.verification_s,
+            "phases_s": statistics.time_s,
+            "generated_nodes": statistics.generated_nodes,
+            "graph_nodes": statistics.graph_nodes,
+            "components": statistics.components,
+            "transfers": statistics.transfers,
+            "regrasps": statistics.regrasps,
+            "regrasps_before_smoothing": statistics.regrasps_before_smoothing,
+            "states": motion.segments.iter().map(|segment| segment.states.len()).sum::<usize>(),
+            "duration_s": duration(run),
+            "certificate": run.plan.as_ref().and_then(|plan| plan.certificate.as_ref()),
+            "checks": run.verdict.as_ref().map(|verdict| &verdict.checks),
+            "rejections": rejection_counts(statistics),
+            "plugins": self.plugins(),
+            "warnings": run.outcome.warnings,
+            "output": self.saved,
+        })
+    }
+
+    fn plugins(&self) -> Value {
+        let choice = |(slot, choice): (Slot, &regrasp::host::Choice)| (slot.name().to_owned(), json!(choice));
+        Value::Object(self.choices.iter().map(choice).collect::<Map<_, _>>())
+    }
+
+    /// The report for a person.
+    pub fn text(&self) -> String {
+        let (run, statistics) = (self.run, &self.run.outcome.statistics);
+        let verdict = if run.is_verified() { "verified" } else { "not verified" };
+        let mut text = match run.outcome.status {
+            Status::Solved => {
+                format!("{}: solved, {verdict} (seed {})\n", self.scenario.name, self.options.seed)
+            }
+            _ => format!(
+                "{}: {} of {} goals reached (seed {})\n",
+                self.scenario.name,
+                run.outcome.goals_reached,
+                self.scenario.problem.goal.len(),
+                self.options.seed
+            ),
+        };
+        text += &self.times();
+        text += &format!(
+            "  graph         {} nodes in {} components, {} generated\n",
+            statistics.graph_nodes, statistics.components, statistics.generated_nodes
+        );
+        text += &run.plan.as_ref().map(|plan| self.plan_lines(plan)).unwrap_or_default();
+        text += &run
+            .outcome
+            .warnings
+            .iter()
+            .map(|warning| format!("  warning       {warning}\n"))
+            .collect::<String>();
+        text + &self.saved_line()
+    }
+
+    fn times(&self) -> String {
+        let phases = self.run.outcome.statistics.time_s.iter();
+        let phases: Vec<String> = phases.map(|(phase, s)| format!("{phase} {:.1}", s * 1e3)).collect();
+        let planning =
+            format!("  planning      {:.1} ms ({})\n", self.run.planning_s * 1e3, phases.join(", "));
+        match self.run.verdict {
+            Some(_) => format!("{planning}  verification  {:.1} ms\n", self.run.verification_s * 1e3),
+            None => planning,
+        }
+    }
+
+    fn plan_lines(&self, plan: &Plan) -> String {
+        let statistics = &self.run.outcome.statistics;
+        let states: usize = plan.segments.iter().map(|segment| segment.states.len()).sum();
+        let mut text = format!(
+            "  plan          {} transfers, {} regrasps ({} before smoothing), {states} states, {:.1} s of motion\n",
+            statistics.transfers,
+            statistics.regrasps,
+            statistics.regrasps_before_smoothing,
+            duration(self.run).unwrap_or(0.0)
+        );
+        let Some(certificate) = &plan.certificate else { return text };
+        let mut figure = |name: &str, extreme: &Option<Extreme>, scale: f64, unit: &str| {
+            if let Some(extreme) = extreme {
+                let (value, place) = (extreme.value * scale, place_text(&extreme.place));
+                text += &format!("  {name:<13} {value:.3}{unit} ({place})\n");
+            }
+        };
+        figure("margin", &certificate.closure_margin, 1.0, "");
+        figure("clearance", &certificate.clearance, 1e3, " mm");
+        figure("slip", &certificate.slip, 1e3, " mm");
+        figure("closure", &certificate.closure_residual, 1e6, " µm");
+        text
+    }
+
+    fn saved_line(&self) -> String {
+        match self.saved {
+            Some(path) => format!("  written to    {}\n", path.display()),
+            None if self.run.is_verified() => "  not written   add `-o plan.json` to keep the plan\n".into(),
+            None => String::new(),
+        }
+    }
+
+    /// Why a plan was rejected: the checks that it does not meet.
+    pub fn why_not_verified(&self) -> String {
+        let table =
+            self.run.verdict.as_ref().map(|verdict| check_table(verdict.failures())).unwrap_or_default();
+        let kept = match self.saved {
+            Some(path) => format!("it was kept as `{}`", path.display()),
+            None => "it was not written".into(),
+        };
+        format!("the plan does not verify; {kept}\n{table}")
+    }
+
+    /// Why there is no plan, what to try, and the rejections by cause.
+    pub fn why_no_plan(&self) -> String {
+        let outcome = &self.run.outcome;
+        let stuck = match outcome.stuck {
+            Some(Stuck::StartGrasp) => "no admissible grasp was found at the start".to_owned(),
+            Some(Stuck::GoalGrasp(goal)) => format!("no admissible grasp was found at goal {}", goal + 1),
+            Some(Stuck::Search(goal)) => format!("the search for goal {} found no way", goal + 1),
+            None => format!("the search was stopped on the way to goal {}", outcome.goals_reached + 1),
+        };
+        let stopped = match self.stopped_by() {
+            Some(StoppedBy::TimeLimit) => "no plan within the time limit",
+            Some(StoppedBy::Interrupt) => "interrupted",
+            _ => "no plan within the budget of nodes",
+        };
+        let rejections = rejections(&outcome.statistics);
+        format!("{stopped}: {stuck}\n{}{rejections}", self.advice())
+    }
+
+    fn advice(&self) -> String {
+        let outcome = &self.run.outcome;
+        let warned = outcome
+            .warnings
+            .iter()
+            .map(|warning| format!("  first look at  {warning}\n"))
+            .collect::<String>();
+        let cause = most_frequent(&outcome.statistics);
+        let place = match outcome.stuck {
+            Some(Stuck::StartGrasp) => "the start pose",
+            _ => "the goal pose",
+        };
+        let advice = match (outcome.stuck, cause) {
+            (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), Some(Reason::Reach | Reason::Limits)) => {
+                format!("most grasps are out of reach: move {place} closer to the hand")
+            }
+            (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), Some(Reason::Collision | Reason::Retreat)) => {
+                format!(
+                    "most grasps collide: move {place} away from palm and obstacles, or lower `limits.resolution.clearance`"
+                )
+            }
+            (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), _) => {
+                format!("change {place}, or raise the friction")
+            }
+            _ => "raise `--max-nodes` or the time limit, try another `--seed`, or add a goal half way".into(),
+        };
+        format!("{warned}  to try  {advice}\n")
+    }
+}
+
+/// Duration of the motion (s).
+fn duration(run: &Run) -> Option<f64> {
+    run.outcome.motion.segments.last()?.times.last().copied()
+}
+
+fn most_frequent(statistics: &Statistics) -> Option<Reason> {
+    let sampler = statistics.plugins.get(&Slot::Sampler)?;
+    sampler.rejections.iter().max_by_key(|&(_, count)| count).map(|(&reason, _)| reason)
+}
+
+fn rejection_counts(statistics: &Statistics) -> Value {
+    let counts =
+        statistics.plugins.iter().map(|(slot, plugin)| (slot.name().to_owned(), json!(plugin.rejections)));
+    Value::Object(counts.collect())
+}
+
+/// The table of rejections: a row for each slot that was called, a column for each cause that occurred.
+pub fn rejections(statistics: &Statistics) -> String {
+    let occurred =
+        |reason: &Reason| statistics.plugins.values().any(|plugin| plugin.rejections.contains_key(reason));
+    let reasons: Vec<Reason> = Reason::ALL.into_iter().filter(occurred).collect();
+    let head: Vec<&str> =
+        ["rejections by cause", "calls"].into_iter().chain(reasons.iter().map(|r| r.name())).collect();
+    let mut table = Table::new(1, &head);
+    for (slot, plugin) in &statistics.plugins {
+        let count = |reason: &Reason| plugin.rejections.get(reason).map(u64::to_string).unwrap_or("-".into());
+        let cells = [slot.name().to_owned(), plugin.calls.to_string()].into_iter();
+        table.row(cells.chain(reasons.iter().map(count)));
+    }
+    table.text()
+}

@@ -1,0 +1,13 @@
+//! `regrasp schema`
+
+use crate::args::{Kind, SchemaArgs};
+use crate::{Failure, say};
+use regrasp::study::scenario;
+
+pub fn run(args: &SchemaArgs) -> Result<(), Failure> {
+    let schema = match args.kind {
+        Kind::Scenario => scenario::schema(),
+        Kind::Hand => scenario::hand_schema(),
+    };
+    say(&format!("{schema}\n"))
+}

@@ -1,0 +1,77 @@
+//! `regrasp verify`
+
+use crate::args::VerifyArgs;
+use crate::table::Table;
+use crate::{Failure, say, say_json};
+use regrasp::plan::Place;
+use regrasp::verify::Check;
+use serde_json::json;
+
+pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
+    let plan = regrasp::plan::read(&args.plan).map_err(Failure::bad_input)?;
+    let verdict = regrasp::verify::verify(&plan);
+    if args.json {
+        say_json(&json!(verdict))?;
+    } else {
+        let word = if verdict.valid { "valid" } else { "not valid" };
+        say(&format!("{}: {word}\n{}", args.plan.display(), check_table(verdict.checks.iter())))?;
+    }
+    if verdict.valid {
+        return Ok(());
+    }
+    let failed: Vec<&str> = verdict.failures().map(|check| check.name).collect();
+    Err(Failure::not_verified(format!("the plan does not verify: {}", failed.join(", "))))
+}
+
+/// Checks as a table, one a line.
+pub fn check_table<'a>(checks: impl Iterator<Item = &'a Check>) -> String {
+    let mut table = Table::new(2, &["check", "", "worst", "limit", "unit", "where"]);
+    for check in checks {
+        let verdict = if check.ok { "ok" } else { "FAILED" };
+        let worst = check.worst.map_or("-".to_owned(), number);
+        let place = place_text(&check.place);
+        table.row([check.name, verdict, &worst, &number(check.limit), check.unit, &place].map(str::to_owned));
+    }
+    table.text()
+}
+
+fn number(x: f64) -> String {
+    let size = x.abs();
+    if x == 0.0 || (1e-3..1e5).contains(&size) { format!("{x:.4}") } else { format!("{x:.2e}") }
+}
+
+/// A place in a plan in words.
+pub fn place_text(place: &Place) -> String {
+    let part = |name: &str, index: Option<usize>| index.map(|index| format!("{name} {index}"));
+    let parts = [
+        part("goal", place.goal),
+        part("segment", place.segment),
+        part("state", place.state),
+        place.time.map(|time| format!("{time:.2} s")),
+        part("finger", place.finger),
+        part("joint", place.joint),
+        place.pair.map(|(a, b)| format!("{a:?} and {b:?}")),
+        place.note.clone(),
+    ];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_at_any_size() {
+        assert_eq!(
+            ["0.0000", "12.5000", "2.00e-5"],
+            [number(0.0), number(12.5), number(2e-5)].each_ref().map(|s| s.as_str())
+        );
+    }
+
+    #[test]
+    fn places_name_only_what_applies() {
+        let place = Place { segment: Some(2), finger: Some(1), ..Place::default() };
+        assert_eq!(place_text(&place), "segment 2, finger 1");
+        assert_eq!(place_text(&Place::default()), "");
+    }
+}
