@@ -1,6 +1,6 @@
 //! The closest point of a polyhedron: exact, with its sign, and quick where a facet nearby is known.
 
-use crate::bvh::Hierarchy;
+use crate::bvh::{Hierarchy, Thing};
 use crate::polyhedron::{HalfEdge, Polyhedron};
 use regrasp_api::{Contact, Projection, Vec3};
 
@@ -46,34 +46,31 @@ impl ClosestPoints {
     /// Prepares the hierarchy, in O(n log n).
     pub fn new(polyhedron: &Polyhedron) -> Self {
         let mesh = &polyhedron.mesh;
-        let boxes: Vec<_> = (0..mesh.facets().len() as u32)
-            .map(|facet| {
-                let [a, b, c] = mesh.corners(facet);
-                (a.inf(&b).inf(&c), a.sup(&b).sup(&c))
-            })
+        let things: Vec<_> = (0..mesh.facets().len() as u32)
+            .map(|facet| Thing { corners: mesh.corners(facet), thin: mesh.normal(facet) })
             .collect();
         let mut vertex_normals = vec![Vec3::zeros(); mesh.vertices().len()];
         for (index, edge) in polyhedron.half_edges.iter().enumerate() {
             let angle = edge.apex[1].atan2(edge.apex[0]);
             vertex_normals[edge.vertex as usize] += mesh.normal(index as u32 / 3) * angle;
         }
-        Self { facets: Hierarchy::new(&boxes), vertex_normals }
+        Self { facets: Hierarchy::new(&things), vertex_normals }
     }
 
     /// The closest contact and the signed distance (m).
     pub fn project(&self, polyhedron: &Polyhedron, p_OF: &Vec3, hint: Option<u32>) -> Projection {
-        let hint = hint.filter(|&facet| (facet as usize) < polyhedron.mesh.facets().len());
-        let nearest = match hint {
-            Some(facet) if polyhedron.convex => walk(polyhedron, p_OF, facet),
-            _ => None,
+        let start = hint.filter(|&facet| (facet as usize) < polyhedron.mesh.facets().len());
+        let local = start.map(|facet| walk(polyhedron, p_OF, facet));
+        let nearest = match local {
+            Some((nearest, true)) if is_certain(polyhedron, p_OF, &nearest) => nearest,
+            _ => self.search(polyhedron, p_OF, local.map(|(nearest, _)| nearest)),
         };
-        let nearest = nearest.unwrap_or_else(|| self.search(polyhedron, p_OF, hint));
         self.signed(polyhedron, p_OF, &nearest)
     }
 
-    /// Searches all facets; `hint` only gives the first bound.
-    fn search(&self, polyhedron: &Polyhedron, p_OF: &Vec3, hint: Option<u32>) -> Nearest {
-        let mut best = on_facet(polyhedron, p_OF, hint.unwrap_or(0));
+    /// Searches all facets; what is known already only gives the first bound.
+    fn search(&self, polyhedron: &Polyhedron, p_OF: &Vec3, known: Option<Nearest>) -> Nearest {
+        let mut best = known.unwrap_or_else(|| on_facet(polyhedron, p_OF, 0));
         let mut bound = best.squared;
         self.facets.closest(p_OF, &mut bound, |facet, bound| {
             let candidate = on_facet(polyhedron, p_OF, facet);
@@ -113,26 +110,25 @@ impl ClosestPoints {
     }
 }
 
-/// Walks downhill from `facet` on a convex polyhedron; `None` where the end is not certainly the closest point.
-///
-/// Outside a convex solid a local minimum is the global one: the solid lies in the half-space that the outward direction
-/// at that point bounds. The direction at a minimum inside a facet may be inward (the far side of a flat object): then
-/// the global search decides.
-fn walk(polyhedron: &Polyhedron, p_OF: &Vec3, facet: u32) -> Option<Nearest> {
+/// Walks downhill from `facet`; true once it has come to a local minimum of the distance.
+fn walk(polyhedron: &Polyhedron, p_OF: &Vec3, facet: u32) -> (Nearest, bool) {
     let mut best = on_facet(polyhedron, p_OF, facet);
     for _ in 0..WALK_STEPS {
         let before = best.facet;
-        let out = p_OF - best.p_OC;
-        if out.dot(&polyhedron.mesh.normal(best.facet)) <= 0.0 && best.feature == Feature::Inside {
-            return None;
-        }
         compare_neighbors(polyhedron, p_OF, &mut best);
         if best.facet == before {
-            let outward = out.dot(&polyhedron.mesh.normal(best.facet)) > 0.0;
-            return outward.then_some(best);
+            return (best, true);
         }
     }
-    None
+    (best, false)
+}
+
+/// Whether a local minimum is certainly the closest point: outside of a convex solid.
+///
+/// A convex solid lies in the half-space that the outward direction at the minimum bounds. The direction at a minimum
+/// inside a facet may be inward (the far side of a flat object): then the global search decides.
+fn is_certain(polyhedron: &Polyhedron, p_OF: &Vec3, nearest: &Nearest) -> bool {
+    polyhedron.convex && (p_OF - nearest.p_OC).dot(&polyhedron.mesh.normal(nearest.facet)) > 0.0
 }
 
 /// Lets the facets that meet at (or within rounding of) the closest point's corner or edge compete with it.
@@ -153,6 +149,15 @@ fn compare_neighbors(polyhedron: &Polyhedron, p_OF: &Vec3, best: &mut Nearest) {
     let n = polyhedron.mesh.normal(facet);
     let near = |edge: &&HalfEdge| n.cross(&edge.along_O).dot(&(p_OC - edge.p_OE)) < tolerance;
     edges.iter().filter(near).for_each(|edge| compete(edge.twin / 3));
+}
+
+/// The contact with one facet alone, whatever else is closer; the distance (m) has no sign.
+pub(crate) fn closest_of_facet(polyhedron: &Polyhedron, p_OF: &Vec3, facet: u32) -> Projection {
+    let Nearest { p_OC, squared, .. } = on_facet(polyhedron, p_OF, facet);
+    let distance = squared.sqrt();
+    let n_O =
+        if distance > polyhedron.snap { (p_OF - p_OC) / distance } else { polyhedron.mesh.normal(facet) };
+    Projection { contact: Contact { facet, p_OC, n_O }, distance }
 }
 
 /// The closest point of one facet (Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).

@@ -1,6 +1,6 @@
 //! Distance to the nearest sharp edge.
 
-use crate::bvh::Hierarchy;
+use crate::bvh::{Hierarchy, Thing};
 use crate::polyhedron::Polyhedron;
 use regrasp_api::Vec3;
 
@@ -28,8 +28,9 @@ impl SharpEdges {
                 (edge.p_OE, edge.at(edge.length))
             })
             .collect();
-        let boxes: Vec<_> = ends.iter().map(|(a, b)| (a.inf(b), a.sup(b))).collect();
-        let mut edges = Self { ends, hierarchy: Hierarchy::new(&boxes), nearest: Vec::new() };
+        let things: Vec<_> =
+            ends.iter().map(|&(a, b)| Thing { corners: [a, b, b], thin: Vec3::zeros() }).collect();
+        let mut edges = Self { ends, hierarchy: Hierarchy::new(&things), nearest: Vec::new() };
         if !edges.ends.is_empty() {
             let middle = |facet| mesh.corners(facet).iter().sum::<Vec3>() / 3.0;
             edges.nearest =

@@ -4,6 +4,7 @@
 //! is the facet's, on a convex edge it is any direction between those of its two facets.
 
 mod bound;
+mod follow;
 mod lift;
 mod trace;
 mod walk;
@@ -13,9 +14,10 @@ use crate::closest::ClosestPoints;
 use crate::polyhedron::Polyhedron;
 use crate::sharp::SharpEdges;
 use bound::LowerBound;
+use follow::Follower;
 use regrasp_api::{
     Build, BuildError, Built, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings,
-    SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, check_range, check_settings, inventory,
+    SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, Waypoint, check_range, check_settings, inventory,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -45,25 +47,32 @@ fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
     Ok(Box::new(Geodesic::new(&settings, &parts.object.mesh, parts.hand.fingertip_radius())?))
 }
 
+/// Samples before an object counts as having (almost) no area that a fingertip can touch.
+const MOST_SAMPLES: usize = 1000;
+
 /// Settings of [`Geodesic`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GeodesicSettings {
     /// An edge is sharp where its facets' normals differ by more than this angle, in 1..=180 degrees. Default 30, a neutral choice.
     pub sharp_angle_deg: f64,
+    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked, in
+    /// 1e-5..=1e-2; at most a fifth of its radius. Default 0.001, the step of a transfer.
+    pub step: f64,
     /// By how much a path may be longer than the shortest one, relative, in 1e-9..=1e-3. Default 2e-4, a neutral choice.
     pub tolerance: f64,
 }
 
 impl Default for GeodesicSettings {
     fn default() -> Self {
-        Self { sharp_angle_deg: 30.0, tolerance: 2e-4 }
+        Self { sharp_angle_deg: 30.0, step: 1e-3, tolerance: 2e-4 }
     }
 }
 
 impl Settings for GeodesicSettings {
     fn validate(&self) -> Result<(), SettingsError> {
         check_range("sharp_angle_deg", self.sharp_angle_deg, 1.0, 180.0)?;
+        check_range("step", self.step, 1e-5, 1e-2)?;
         check_range("tolerance", self.tolerance, 1e-9, 1e-3)
     }
 }
@@ -76,6 +85,8 @@ pub struct Geodesic {
     polyhedron: Polyhedron,
     closest: ClosestPoints,
     sharp: SharpEdges,
+    /// Largest distance (m) between two places of the fingertip that are looked at on solids that are not convex.
+    step: f64,
     /// Sum of the facets' areas up to and with each facet (m²).
     areas: Vec<f64>,
 }
@@ -85,6 +96,7 @@ pub struct Geodesic {
 struct Workspace {
     search: Scratch,
     legs: Vec<Leg>,
+    rolled: Vec<Waypoint>,
 }
 
 thread_local! {
@@ -104,11 +116,26 @@ impl Geodesic {
         Ok(Self {
             settings: *settings,
             radius,
+            step: settings.step.min((radius / 5.0).max(1e-4)),
             areas: areas.collect(),
             closest: ClosestPoints::new(&polyhedron),
             sharp: SharpEdges::new(&polyhedron, settings.sharp_angle_deg.to_radians()),
             polyhedron,
         })
+    }
+
+    /// The vertex farthest along a direction, with that direction as its normal: a contact that every fingertip reaches.
+    fn outermost(&self, n_O: &Vec3) -> Contact {
+        let vertices = self.polyhedron.mesh.vertices();
+        let along = |&vertex: &u32| vertices[vertex as usize].dot(n_O);
+        let farthest = (0..vertices.len() as u32).max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(0);
+        let facet = self.polyhedron.outgoing[farthest as usize] / 3;
+        Contact { facet, p_OC: vertices[farthest as usize], n_O: *n_O }
+    }
+
+    fn follower(&self) -> Follower<'_> {
+        let (polyhedron, closest) = (&self.polyhedron, &self.closest);
+        Follower { polyhedron, closest, radius: self.radius, step: self.step }
     }
 
     /// A point uniform over the facets' area, with its facet's normal.
@@ -125,7 +152,13 @@ impl Geodesic {
 
 impl SurfaceParam for Geodesic {
     fn sample(&self, random: &mut Random) -> Contact {
-        self.on_facets(random)
+        for _ in 0..MOST_SAMPLES {
+            let contact = self.on_facets(random);
+            if self.polyhedron.convex || self.follower().is_free(&contact, 1e-9) {
+                return contact;
+            }
+        }
+        self.outermost(&random.direction())
     }
 
     fn geodesic(
@@ -137,7 +170,7 @@ impl SurfaceParam for Geodesic {
     ) -> Result<bool, CallError> {
         context.count_call(Slot::Surface);
         WORKSPACE.with_borrow_mut(|workspace| {
-            let Workspace { search, legs } = workspace;
+            let Workspace { search, legs, rolled } = workspace;
             let site = |contact: &Contact| Site {
                 p_OP: contact.p_OC,
                 place: self.polyhedron.place(contact.facet, &contact.p_OC),
@@ -153,7 +186,7 @@ impl SurfaceParam for Geodesic {
             trace::trace(&self.polyhedron, search, &found, &to.p_OC, legs);
             lift::lift(&self.polyhedron, self.radius, from, to, legs, path);
             path.length = found.length;
-            Ok(true)
+            Ok(self.polyhedron.convex || self.follower().follow(path, rolled))
         })
     }
 

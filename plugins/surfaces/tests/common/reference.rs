@@ -160,3 +160,26 @@ fn saddle_vertices(mesh: &Mesh) -> Vec<usize> {
     }
     (0..angle.len()).filter(|&v| angle[v] > std::f64::consts::TAU + 1e-9).collect()
 }
+
+/// Distance (m) of a point from the mesh, by trying every facet with every edge.
+pub fn distance(mesh: &Mesh, p: &Vec3) -> f64 {
+    (0..mesh.facets().len() as u32).map(|facet| from_facet(mesh, facet, p)).fold(f64::INFINITY, f64::min)
+}
+
+fn from_facet(mesh: &Mesh, facet: u32, p: &Vec3) -> f64 {
+    let corners = mesh.corners(facet);
+    let n = mesh.normal(facet);
+    let height = n.dot(&(p - corners[0]));
+    let foot = p - n * height;
+    let inside =
+        (0..3).all(|k| n.cross(&(corners[(k + 1) % 3] - corners[k])).dot(&(foot - corners[k])) >= 0.0);
+    if inside {
+        return height.abs();
+    }
+    let edges = (0..3).map(|k| {
+        let (a, b) = (corners[k], corners[(k + 1) % 3]);
+        let t = ((p - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
+        (a + (b - a) * t - p).norm()
+    });
+    edges.fold(f64::INFINITY, f64::min)
+}
