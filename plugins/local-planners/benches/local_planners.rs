@@ -15,7 +15,7 @@ fn rolling(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("rolling");
     for (name, object) in [("sphere", support::sphere()), ("cube", support::cube())] {
         let bench = Bench::new(support::four_finger(), object);
-        let rolling = Rolling::new(RollingSettings::default(), &bench.hand).unwrap();
+        let rolling = Rolling::new(RollingSettings::default(), &*bench.hand).unwrap();
         let mut random = Random::from_key(1, 0, 0, 0);
         let (from, to, steps) = (0..1000)
             .find_map(|_| {
@@ -69,7 +69,7 @@ fn linear(criterion: &mut Criterion) {
 
 fn regrasp(criterion: &mut Criterion) {
     let bench = Bench::new(support::four_finger(), support::sphere());
-    let rrt = Rrt::new(RrtSettings::default(), &bench.hand).unwrap();
+    let rrt = Rrt::new(RrtSettings::default(), &*bench.hand).unwrap();
     let (task, finger, mut random) = (bench.task(), FingerIndex(0), Random::from_key(1, 0, 0, 0));
     let (from, contact, joints, steps) = (0..10_000)
         .find_map(|_| {

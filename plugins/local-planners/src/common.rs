@@ -97,12 +97,12 @@ fn longest_levers(hand: &dyn Hand, finger: FingerIndex) -> FingerJoints {
     levers
 }
 
-/// The most (m) that a finger's points may travel between two stored states.
+/// The most (m) that a finger's points may travel between two stored states, by the bound of the levers.
 ///
-/// The verifier looks ten times between them and wants more clearance than the bodies can move from one look to
-/// the next; two bodies that keep `clearance` and travel 8 `clearance` each leave it a fifth to spare.
+/// States keep `clearance`; what happens in between is certified by the verifier, which halves its steps where bodies move
+/// by more than that. Our choice: the bound is two to three times what the points really travel.
 pub(crate) fn largest_travel(resolution: &Resolution) -> f64 {
-    (8.0 * resolution.clearance).max(resolution.transfer_step)
+    (12.0 * resolution.clearance).max(resolution.transfer_step)
 }
 
 /// `near` with the spare joints of the finger a fraction `s` of the way from `a` to `b`, the others as in `near`.

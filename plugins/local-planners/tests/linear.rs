@@ -60,8 +60,7 @@ fn random_paths_are_closed_and_stable_at_every_state() {
         ("ring", support::ring()),
     ] {
         for hand in [support::four_finger(), support::free_tips()] {
-            let mut bench = support::Bench::new(hand, object.clone());
-            bench.clearance = Box::new(support::Tips::new(&bench));
+            let bench = support::Bench::new(hand, object.clone());
             let (mut random, mut refused) = (Random::from_key(5, 7, 2, 1), Vec::new());
             for _ in 0..12 {
                 let from = support::grasp(&bench, &mut random);

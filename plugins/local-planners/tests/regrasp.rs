@@ -16,7 +16,7 @@ fn regrasp(
     joints: &FingerJoints,
     path: Option<&mut Path>,
 ) -> Reached {
-    let rrt = Rrt::new(RrtSettings::default(), &bench.hand).unwrap();
+    let rrt = Rrt::new(RrtSettings::default(), &*bench.hand).unwrap();
     let target = Target::Regrasp { finger: FINGER, contact, joints };
     rrt.connect(&bench.task(), from, &target, path, &mut context(1)).unwrap()
 }
@@ -80,9 +80,7 @@ fn random_regrasps_touch_at_their_ends_only() {
         ("ring", support::ring()),
     ] {
         for hand in [support::four_finger(), support::free_tips()] {
-            let mut bench = support::Bench::new(hand, object.clone());
-            bench.clearance = Box::new(support::Tips::new(&bench));
-            bench.resolution.friction_margin = 1.0;
+            let bench = support::Bench::new(hand, object.clone());
             let (mut random, mut complete, mut refused) = (Random::from_key(2, 7, 1, 8), 0, Vec::new());
             for _ in 0..12 {
                 let from = support::grasp(&bench, &mut random);

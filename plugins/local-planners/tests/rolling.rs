@@ -8,7 +8,7 @@ use regrasp_local_planners::{Rolling, RollingSettings};
 use support::{check, context};
 
 fn roll(bench: &support::Bench, from: &Configuration, to: &Pose, path: Option<&mut Path>) -> Reached {
-    let rolling = Rolling::new(RollingSettings::default(), &bench.hand).unwrap();
+    let rolling = Rolling::new(RollingSettings::default(), &*bench.hand).unwrap();
     rolling.connect(&bench.task(), from, &Target::Transfer(to), path, &mut context(1)).unwrap()
 }
 

@@ -151,7 +151,7 @@ impl Roller<'_> {
         }
         let p_HF = to_hand(&state.q.X_HO, &contact.tip_center(self.radius)) + velocity(&tip, &rate) * h;
         let end = surface.project(&to_object(X_HEnd, &p_HF), Some(touch.facet)).contact;
-        if self.jumps(&contact, &end) {
+        if self.jumps(&contact, &touch) || self.jumps(&touch, &end) {
             return Err(Failure::Stop(Reason::Closure));
         }
         let p_HF = to_hand(X_HEnd, &end.tip_center(self.radius));
@@ -170,10 +170,10 @@ impl Roller<'_> {
     /// Whether the contact point jumped, as it does where the fingertip leaves one facet of a concave edge for the other.
     ///
     /// On a convex object the closest point never moves farther than the fingertip's centre (projection onto a convex set is
-    /// nonexpansive); what is beyond that is the jump. Jumps too short to count as slip pass.
+    /// nonexpansive); what is beyond that is the jump. Jumps shorter than the closure bound pass.
     fn jumps(&self, a: &Contact, b: &Contact) -> bool {
         let of_center = (b.tip_center(self.radius) - a.tip_center(self.radius)).norm();
-        (b.p_OC - a.p_OC).norm() - of_center > self.slip
+        (b.p_OC - a.p_OC).norm() - of_center > self.closure
     }
 
     /// Slip (m, in O) over one step: how far the material points that touch at its ends move along the surface from each other.

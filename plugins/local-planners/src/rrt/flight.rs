@@ -44,9 +44,14 @@ impl<'a> Flight<'a> {
                 .all(|other| clearance.fingers_free((finger, joints), (other.0, other.1)).is_ok())
     }
 
-    /// The same away from the object, fingertip included.
+    /// The distance (m) that bodies keep which may not touch.
+    pub fn clear(&self) -> f64 {
+        self.task.tolerances.clearance + self.task.resolution.clearance
+    }
+
+    /// Whether the finger keeps clear of everything, its tip away from the object.
     pub fn free_in_air(&self, joints: &FingerJoints) -> bool {
-        self.free(joints, TipRule::Clear(self.task.resolution.clearance))
+        self.free(joints, TipRule::Clear(self.clear()))
     }
 
     /// A bound (m) of how far the finger's points travel between two postures.

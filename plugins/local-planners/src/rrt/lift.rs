@@ -20,12 +20,12 @@ impl Flight<'_> {
     /// false where the finger cannot go.
     ///
     /// The fingertip's distance from the object rises all the way, also while the joints move straight between two of the
-    /// postures.
+    /// postures, and is at least `lowest` (m) at the end.
     pub fn lift(
         &self,
         contact: &Contact,
         joints: &FingerJoints,
-        height: f64,
+        (height, lowest): (f64, f64),
         postures: &mut Vec<FingerJoints>,
     ) -> bool {
         postures.clear();
@@ -43,7 +43,7 @@ impl Flight<'_> {
                 None => return false,
             }
         }
-        true
+        rung.gap >= lowest
     }
 
     /// One rung higher, to the height `to` (m), with more rungs in between where the joints' straight motion needs them.
@@ -66,7 +66,7 @@ impl Flight<'_> {
             return self.climb(contact, middle, to, halvings, postures);
         }
         // Along the normal of a convex object the gap is the height; half of it leaves room for a neighbouring wall.
-        let clear = (0.5 * to).min(self.task.resolution.clearance);
+        let clear = (0.5 * to).min(self.clear());
         self.free(&joints, TipRule::Clear(clear)).then(|| {
             postures.push(joints);
             next

@@ -143,8 +143,10 @@ impl Rrt {
 fn leave(flight: &Flight<'_>, end: End<'_>, postures: &mut Vec<FingerJoints>) -> Option<f64> {
     let Some(contact) = end.contact else { return Some(0.0) };
     let resolution = flight.task.resolution;
-    let heights = [resolution.lift, resolution.retreat[0].min(resolution.retreat[1]).min(resolution.lift)];
-    heights.into_iter().find(|&height| flight.lift(contact, end.joints, height, postures))
+    let lowest = resolution.retreat.into_iter().fold(resolution.lift, f64::min);
+    // A little higher, so that rounding leaves no finger short of the height at which it counts as lifted.
+    let heights = [resolution.lift, lowest].map(|height| 1.01 * height);
+    heights.into_iter().find(|&height| flight.lift(contact, end.joints, (height, lowest), postures))
 }
 
 impl LocalPlanner for Rrt {
@@ -199,7 +201,7 @@ fn unfit(
     if !task.hand.within_limits(*finger, target.joints) {
         return Ok(Some(Reason::Limits));
     }
-    let mut rule = TipRule::Clear(task.resolution.clearance);
+    let mut rule = TipRule::Clear(flight.clear());
     if let Some(contact) = target.contact {
         rule = TipRule::Touches;
         let gap = task.hand.tip_center(*finger, target.joints) - flight.center(contact, 0.0);

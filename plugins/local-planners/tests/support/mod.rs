@@ -8,33 +8,8 @@ use regrasp_api::*;
 use regrasp_contact_models::Pcwf;
 use regrasp_stability_tests::{ForceClosure, ForceClosureSettings};
 use regrasp_surfaces::geodesic::{Geodesic, GeodesicSettings};
-use regrasp_world::ChainHand;
-use std::path::Path as FilePath;
-
-/// Nothing ever collides: for tests of kinematics alone.
-pub struct EmptyAir;
-
-impl Clearance for EmptyAir {
-    fn object_free(&self, _: &Pose) -> Result<(), BodyPair> {
-        Ok(())
-    }
-    fn finger_free(&self, _: FingerIndex, _: &FingerJoints, _: &Pose, _: TipRule) -> Result<(), BodyPair> {
-        Ok(())
-    }
-    fn fingers_free(
-        &self,
-        _: (FingerIndex, &FingerJoints),
-        _: (FingerIndex, &FingerJoints),
-    ) -> Result<(), BodyPair> {
-        Ok(())
-    }
-    fn configuration_free(&self, _: &Configuration, _: FingerSet, _: bool) -> Result<(), BodyPair> {
-        Ok(())
-    }
-    fn distances(&self, _: &Configuration, _: f64) -> Vec<PairDistance> {
-        Vec::new()
-    }
-}
+use regrasp_world::{ChainHand, SceneClearance};
+use std::{path::Path as FilePath, sync::Arc};
 
 /// Every grasp holds: for tests of kinematics alone.
 pub struct Glue;
@@ -80,9 +55,9 @@ impl Admissible for Anything {
 
 /// Everything that a task borrows.
 pub struct Bench {
-    pub hand: ChainHand,
+    pub hand: Arc<ChainHand>,
     pub object: ObjectModel,
-    pub clearance: Box<dyn Clearance>,
+    pub clearance: SceneClearance,
     pub surface: Box<dyn SurfaceParam>,
     pub stability: Box<dyn StabilityTest>,
     pub tolerances: Tolerances,
@@ -91,24 +66,32 @@ pub struct Bench {
 
 impl Bench {
     pub fn new(hand: HandDescription, object: ObjectModel) -> Self {
-        let hand = ChainHand::new(hand).unwrap();
+        Self::among(hand, object, &[])
+    }
+
+    pub fn among(hand: HandDescription, object: ObjectModel, obstacles: &[ObstacleDescription]) -> Self {
+        let hand = Arc::new(ChainHand::new(hand).unwrap());
+        let resolution = Resolution::default();
+        let clearance =
+            SceneClearance::new(hand.clone(), &object, obstacles, resolution.clearance, FilePath::new("."))
+                .unwrap();
         let surface =
             Geodesic::new(&GeodesicSettings::default(), &object.mesh, hand.fingertip_radius()).unwrap();
         Self {
             hand,
             object,
-            clearance: Box::new(EmptyAir),
+            clearance,
             surface: Box::new(surface),
             stability: Box::new(ForceClosure::new(ForceClosureSettings::default()).unwrap()),
             tolerances: Tolerances::default(),
-            resolution: Resolution::default(),
+            resolution,
         }
     }
 
     pub fn task(&self) -> Task<'_> {
         Task {
-            hand: &self.hand,
-            clearance: &*self.clearance,
+            hand: &*self.hand,
+            clearance: &self.clearance,
             contact_model: &Pcwf,
             stability: &*self.stability,
             surface: &*self.surface,
@@ -218,62 +201,4 @@ pub fn nearby(X_HO: &Pose, random: &mut Random, distance: f64, angle: f64) -> Po
     let turn = Rotation::from_scaled_axis(random.direction() * random.range(0.2 * angle, angle));
     let p = X_HO.translation.vector + random.direction() * random.range(0.0, distance);
     Pose::from_parts(p.into(), turn * X_HO.rotation)
-}
-
-/// Fingertips' balls against the object and each other, by brute force; no links, no palm.
-pub struct Tips {
-    hand: ChainHand,
-    mesh: Mesh,
-    clearance: f64,
-}
-
-impl Tips {
-    pub fn new(bench: &Bench) -> Self {
-        Self {
-            hand: bench.hand.clone(),
-            mesh: bench.object.mesh.clone(),
-            clearance: bench.resolution.clearance,
-        }
-    }
-}
-
-impl Clearance for Tips {
-    fn object_free(&self, _: &Pose) -> Result<(), BodyPair> {
-        Ok(())
-    }
-    fn finger_free(
-        &self,
-        finger: FingerIndex,
-        joints: &FingerJoints,
-        X_HO: &Pose,
-        tip: TipRule,
-    ) -> Result<(), BodyPair> {
-        let TipRule::Clear(clear) = tip else { return Ok(()) };
-        let p_OF = geometry::to_object(X_HO, &self.hand.tip_center(finger, joints));
-        let gap = (geometry::closest(&self.mesh, &p_OF) - p_OF).norm() - self.hand.fingertip_radius();
-        if gap >= clear { Ok(()) } else { Err((Body::Object, Body::Fingertip(finger))) }
-    }
-    fn fingers_free(
-        &self,
-        a: (FingerIndex, &FingerJoints),
-        b: (FingerIndex, &FingerJoints),
-    ) -> Result<(), BodyPair> {
-        let apart = self.hand.tip_center(a.0, a.1) - self.hand.tip_center(b.0, b.1);
-        let close = apart.norm() < 2.0 * self.hand.fingertip_radius() + self.clearance;
-        if close { Err((Body::Fingertip(a.0), Body::Fingertip(b.0))) } else { Ok(()) }
-    }
-    fn configuration_free(&self, q: &Configuration, _: FingerSet, _: bool) -> Result<(), BodyPair> {
-        for (finger, joints) in q.joints.iter() {
-            if q.contacts[finger].is_none() {
-                self.finger_free(finger, joints, &q.X_HO, TipRule::Clear(self.clearance))?;
-            }
-            for (other, theirs) in q.joints.iter().skip(finger.index() + 1) {
-                self.fingers_free((finger, joints), (other, theirs))?;
-            }
-        }
-        Ok(())
-    }
-    fn distances(&self, _: &Configuration, _: f64) -> Vec<PairDistance> {
-        Vec::new()
-    }
 }
