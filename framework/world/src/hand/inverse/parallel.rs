@@ -172,7 +172,7 @@ impl Parallel {
 fn circle(a: f64, b: f64, c: f64, slack: f64, near: f64) -> Option<[(f64, f64); 2]> {
     let square = a * a + b * b;
     if square <= slack {
-        return (c * c <= slack).then(|| [near.sin_cos(); 2]);
+        return any_angle(c * c <= slack, near);
     }
     let discriminant = square - c * c;
     if discriminant < -(1e-10 * square + slack) {
@@ -187,4 +187,12 @@ fn circle(a: f64, b: f64, c: f64, slack: f64, near: f64) -> Option<[(f64, f64); 
         ((bc + a * root) * scale, (ac - b * root) * scale),
         ((bc - a * root) * scale, (ac + b * root) * scale),
     ])
+}
+
+/// The degenerate case: every angle is a solution, or none. Apart and cold, because inlined the compiler computes the sine
+/// and cosine in every case.
+#[cold]
+#[inline(never)]
+fn any_angle(solvable: bool, near: f64) -> Option<[(f64, f64); 2]> {
+    solvable.then(|| [near.sin_cos(); 2])
 }
