@@ -43,6 +43,12 @@ impl Node {
                 high[k] = high[k].max(along);
             }
         }
+        // Rounding of the products above and of the closest points: ties must be visited.
+        for k in 0..3 {
+            let slack = 1e-12 * low[k].abs().max(high[k].abs());
+            low[k] -= slack;
+            high[k] += slack;
+        }
         Self { axes, low, high, start: start as u32, count: members.len() as u32 }
     }
 

@@ -8,7 +8,7 @@
 use super::lift::angle;
 use crate::closest::{ClosestPoints, closest_of_facet};
 use crate::polyhedron::Polyhedron;
-use regrasp_api::{Contact, SurfacePath, Vec3, Waypoint, slerp_normals};
+use regrasp_api::{Contact, Projection, SurfacePath, Vec3, Waypoint, slerp_normals};
 
 /// Depth (m) to which the ball may sink into the facets: rounding, far below every tolerance of a plan.
 const SINK: f64 = 1e-9;
@@ -40,8 +40,7 @@ pub(super) struct Follower<'a> {
 impl Follower<'_> {
     /// Whether the ball at a contact touches nothing but the contact point.
     pub fn is_free(&self, contact: &Contact, sink: f64) -> bool {
-        let p_OF = contact.tip_center(self.radius);
-        self.closest.project(self.polyhedron, &p_OF, Some(contact.facet)).distance >= self.radius - sink
+        self.tip(&contact.tip_center(self.radius), contact.facet).distance >= self.radius - sink
     }
 
     /// Rewrites `path`, whose waypoints roll over the facets, so that the ball penetrates nothing; `false` where it cannot go.
@@ -90,19 +89,35 @@ impl Follower<'_> {
     }
 
     /// The free contact nearest to a blocked one, between it and a free one.
+    ///
+    /// Each guess is where the ball just touches the plane of what it last sank into: exact at the second try between
+    /// facets, and in between bisection.
     fn edge_of_free(&self, free: &Contact, blocked: &Contact) -> Contact {
-        let span = (free.tip_center(self.radius) - blocked.tip_center(self.radius)).norm();
+        let center = |t: f64| between(free, blocked, t).tip_center(self.radius);
+        let span = (center(0.0) - center(1.0)).norm();
         let (mut low, mut high, mut best) = (0.0, 1.0, *free);
+        let mut wall = self.tip(&center(1.0), blocked.facet).contact;
         while (high - low) * span > SAME / 4.0 {
-            let middle = (low + high) / 2.0;
-            let contact = between(free, blocked, middle);
-            if self.is_free(&contact, SINK) {
-                (low, best) = (middle, contact);
-            } else {
-                high = middle;
+            let gap = |t: f64| wall.n_O.dot(&(center(t) - wall.p_OC)) - self.radius;
+            let (before, after) = (gap(low), gap(high));
+            let certain = before > 0.0 && after < 0.0;
+            let t = if certain { low + (high - low) * before / (before - after) } else { (low + high) / 2.0 };
+            let contact = between(free, blocked, t);
+            let tip = self.tip(&contact.tip_center(self.radius), contact.facet);
+            if tip.distance < self.radius - SINK {
+                (high, wall) = (t, tip.contact);
+                continue;
+            }
+            (low, best) = (t, contact);
+            if certain {
+                break;
             }
         }
         best
+    }
+
+    fn tip(&self, p_OF: &Vec3, hint: u32) -> Projection {
+        self.closest.project(self.polyhedron, p_OF, Some(hint))
     }
 
     fn touch(&self, contact: Contact) -> Touch {
@@ -163,17 +178,15 @@ impl Follower<'_> {
 
     /// Whether the contact may go straight from one place to the next.
     fn is_direct(&self, from: &Touch, to: &Touch, gap: f64) -> bool {
-        if gap > 1.5 * self.step {
-            return false;
-        }
-        [0.5, 0.25, 0.75].iter().all(|&t| {
-            let contact = between(&from.contact, &to.contact, t);
-            let tip =
-                self.closest.project(self.polyhedron, &contact.tip_center(self.radius), Some(contact.facet));
-            (tip.distance - self.radius).abs() < STRAY
-                && self.closest.project(self.polyhedron, &contact.p_OC, Some(contact.facet)).distance.abs()
-                    < STRAY
-        })
+        let same_facet = from.contact.facet == to.contact.facet;
+        gap <= 1.5 * self.step
+            && [0.5, 0.25, 0.75].iter().all(|&t| {
+                let contact = between(&from.contact, &to.contact, t);
+                let off = |p: &Vec3| self.tip(p, contact.facet).distance;
+                // A straight line between two points of a facet stays in it.
+                (off(&contact.tip_center(self.radius)) - self.radius).abs() < STRAY
+                    && (same_facet || off(&contact.p_OC).abs() < STRAY)
+            })
     }
 
     /// Moves a ball's centre to the offset surface; `None` where it comes to no rest.
@@ -214,6 +227,14 @@ impl Follower<'_> {
         let (along_a, along_b) = ((to_a - cos * to_b) / determinant, (to_b - cos * to_a) / determinant);
         // A plane that would have to pull is not touched.
         (along_a >= 0.0 && along_b >= 0.0).then(|| center + a.n_O * along_a + b.n_O * along_b)
+    }
+
+    /// The contact of a ball pushed out of (or back to) the surface from a contact where it sinks in.
+    pub fn settled(&self, contact: Contact) -> Contact {
+        if self.is_free(&contact, SINK) {
+            return contact;
+        }
+        self.settle(&contact.tip_center(self.radius)).map_or(contact, |touch| touch.contact)
     }
 
     /// Appends a contact, with the way of the ball's centre as its length.

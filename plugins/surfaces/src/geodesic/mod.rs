@@ -195,7 +195,8 @@ impl SurfaceParam for Geodesic {
     }
 
     fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
-        walk::walk(&self.polyhedron, from, direction_O, distance)
+        let reached = walk::walk(&self.polyhedron, from, direction_O, distance);
+        if self.polyhedron.convex { reached } else { self.follower().settled(reached) }
     }
 
     fn edge_distance(&self, contact: &Contact) -> f64 {

@@ -44,22 +44,28 @@ fn head_out(polyhedron: &Polyhedron, from: &Contact, tangent: &Vec3) -> Heading 
     let mut best = (f64::INFINITY, Heading { facet: from.facet, p_OP: from.p_OC, along_O: *tangent });
     polyhedron.facets_at(place, |facet| {
         let n = polyhedron.mesh.normal(facet);
-        let along_O = (tangent - n * n.dot(tangent)).normalize();
-        let heading = Heading { facet, p_OP: from.p_OC, along_O };
-        // How far off the facet the direction leads: outwards over an edge that holds the point, or off its plane.
-        let mut off = n.dot(tangent).abs() / tangent.norm() * 1e-3;
-        for index in 3 * facet..3 * facet + 3 {
-            let edge = &polyhedron.half_edges[index as usize];
-            let inward = n.cross(&edge.along_O);
-            if inward.dot(&(from.p_OC - edge.p_OE)) < polyhedron.snap {
-                off += (-inward.dot(&along_O)).max(0.0);
-            }
-        }
-        if along_O.iter().all(|x| x.is_finite()) && off < best.0 {
-            best = (off, heading);
+        let flat = tangent - n * n.dot(tangent);
+        let along_O = kept_inside(polyhedron, facet, &from.p_OC, &flat.normalize());
+        let off = (along_O - tangent.normalize()).norm();
+        if off < best.0 {
+            best = (off, Heading { facet, p_OP: from.p_OC, along_O });
         }
     });
     best.1
+}
+
+/// The direction, turned into the facet's edge where it leads out over an edge that holds the point.
+fn kept_inside(polyhedron: &Polyhedron, facet: u32, p_OP: &Vec3, along_O: &Vec3) -> Vec3 {
+    let n = polyhedron.mesh.normal(facet);
+    let mut kept = *along_O;
+    for index in 3 * facet..3 * facet + 3 {
+        let edge = &polyhedron.half_edges[index as usize];
+        let inward = n.cross(&edge.along_O);
+        if inward.dot(&(p_OP - edge.p_OE)) < polyhedron.snap && inward.dot(&kept) < 0.0 {
+            kept = edge.along_O * edge.along_O.dot(&kept).signum();
+        }
+    }
+    kept
 }
 
 /// The edge through which a heading leaves its facet, and the distance to it (m).
