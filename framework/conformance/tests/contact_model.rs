@@ -1,0 +1,239 @@
+//! For each law of contact models, and for each law of entries, one liar that breaks it and no other.
+#![allow(missing_docs)]
+
+mod support;
+
+use regrasp_api::*;
+use regrasp_conformance::{assert_silent, check, checks};
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// What a liar does wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Lie {
+    Nothing,
+    NoEdges,
+    ShrinksAtHighFriction,
+    WiderThanCoulomb,
+    TwoAreEnough,
+    Counts,
+    OtherOnOtherThreads,
+    Prints,
+}
+
+struct Liar {
+    lie: Lie,
+    calls: AtomicU64,
+    home: std::thread::ThreadId,
+}
+
+fn build(lie: Lie) -> Box<dyn ContactModel> {
+    Box::new(Liar { lie, calls: AtomicU64::new(0), home: std::thread::current().id() })
+}
+
+impl ContactModel for Liar {
+    fn cone(&self, _contact: &Contact, mu: f64) -> Cone<'_> {
+        let round = Cone::Elliptic { mu, gamma: 0.0 };
+        match self.lie {
+            Lie::NoEdges if mu == 0.0 => Cone::Polyhedral(&[]),
+            Lie::ShrinksAtHighFriction if mu > 1.0 => Cone::Elliptic { mu: 0.9, gamma: 0.0 },
+            Lie::WiderThanCoulomb => Cone::Elliptic { mu: 1.1 * mu, gamma: 0.0 },
+            Lie::Counts if self.calls.fetch_add(1, Ordering::Relaxed) % 7 == 6 && mu > 0.1 => {
+                Cone::Elliptic { mu: mu - 1e-12, gamma: 0.0 }
+            }
+            Lie::OtherOnOtherThreads if std::thread::current().id() != self.home => {
+                Cone::Elliptic { mu: 0.5 * mu, gamma: 0.0 }
+            }
+            Lie::Prints => {
+                println!("the friction is {mu}");
+                round
+            }
+            _ => round,
+        }
+    }
+
+    fn fewest_contacts(&self) -> usize {
+        if self.lie == Lie::TwoAreEnough { 2 } else { 3 }
+    }
+}
+
+const HONEST: Entry = Entry {
+    id: "contact-model/liar",
+    slots: &[Slot::ContactModel],
+    summary: "says what it likes",
+    references: &["nobody"],
+    schema: NoSettings::schema,
+    check: check_settings::<NoSettings>,
+    build: Build::ContactModel(|json, _| {
+        NoSettings::from_json(json)?;
+        Ok(build(Lie::Nothing))
+    }),
+};
+
+macro_rules! liar {
+    ($lie:expr) => {
+        Entry {
+            build: Build::ContactModel(|json, _| {
+                NoSettings::from_json(json)?;
+                Ok(build($lie))
+            }),
+            ..HONEST
+        }
+    };
+}
+
+#[test]
+fn each_liar_fails_its_check_and_no_other() {
+    let liars = [
+        (liar!(Lie::NoEdges), "cone-valid"),
+        (liar!(Lie::ShrinksAtHighFriction), "cone-monotone"),
+        (liar!(Lie::WiderThanCoulomb), "cone-within-friction"),
+        (liar!(Lie::TwoAreEnough), "fewest-contacts"),
+        (liar!(Lie::Counts), "contact-model-pure"),
+        (liar!(Lie::OtherOnOtherThreads), "contact-model-pure"),
+    ];
+    support::judge(Slot::ContactModel, &HONEST, &liars, &[]);
+}
+
+/// Settings with one number of each kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct Numbers {
+    /// A length (m), 0.001 to 0.1.
+    length: f64,
+    /// A count, 3 to 64.
+    edges: usize,
+}
+
+impl Default for Numbers {
+    fn default() -> Self {
+        Self { length: 0.01, edges: 8 }
+    }
+}
+
+impl Settings for Numbers {
+    fn validate(&self) -> Result<(), SettingsError> {
+        check_range("length", self.length, 0.001, 0.1)?;
+        check_count("edges", self.edges, 3, 64)
+    }
+}
+
+/// Settings that say one range and keep another.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct Loose {
+    /// A length (m), 0.001 to 0.1, or so it says.
+    length: f64,
+}
+
+impl Default for Loose {
+    fn default() -> Self {
+        Self { length: 0.01 }
+    }
+}
+
+impl Settings for Loose {
+    fn validate(&self) -> Result<(), SettingsError> {
+        if self.length <= 0.2 {
+            check_range("length", self.length.min(0.1), 0.001, 0.1)
+        } else {
+            check_range("length", self.length, 0.001, 0.1)
+        }
+    }
+}
+
+/// Settings without a word about them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct Undescribed {
+    on: bool,
+}
+
+impl Settings for Undescribed {
+    fn validate(&self) -> Result<(), SettingsError> {
+        Ok(())
+    }
+}
+
+/// Settings that a default does not satisfy.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct NoDefault {
+    /// A length (m), 0.001 to 0.1.
+    length: f64,
+}
+
+impl Settings for NoDefault {
+    fn validate(&self) -> Result<(), SettingsError> {
+        check_range("length", self.length, 0.001, 0.1)
+    }
+}
+
+/// Settings that ignore what they do not know.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default)]
+struct Lenient {}
+
+impl Settings for Lenient {
+    fn validate(&self) -> Result<(), SettingsError> {
+        Ok(())
+    }
+}
+
+macro_rules! with_settings {
+    ($settings:ty) => {
+        Entry {
+            schema: <$settings>::schema,
+            check: check_settings::<$settings>,
+            build: Build::ContactModel(|json, _| {
+                <$settings>::from_json(json)?;
+                Ok(build(Lie::Nothing))
+            }),
+            ..HONEST
+        }
+    };
+}
+
+#[test]
+fn each_lying_entry_fails_its_check_and_no_other() {
+    check(&with_settings!(Numbers)).assert_passes();
+    let careless = Entry { build: Build::ContactModel(|_, _| Ok(build(Lie::Nothing))), ..HONEST };
+    let liars = [
+        (Entry { id: "surface/liar", ..HONEST }, "entry-identity"),
+        (Entry { id: "contact-model/Liar", ..HONEST }, "entry-identity"),
+        (Entry { slots: &[], ..HONEST }, "entry-identity"),
+        (Entry { references: &[], ..HONEST }, "entry-description"),
+        (Entry { summary: " ", ..HONEST }, "entry-description"),
+        (with_settings!(Undescribed), "entry-schema"),
+        (with_settings!(Lenient), "entry-unknown-key"),
+        (with_settings!(Loose), "entry-ranges"),
+        (careless, "entry-build-agrees"),
+    ];
+    for (liar, expected) in &liars {
+        let report = check(liar);
+        assert_eq!(report.failed(), [*expected], "{report}");
+    }
+    // Where even the defaults are refused no plugin can be built, and nothing else can be said of it.
+    let report = check(&with_settings!(NoDefault));
+    assert!(report.failed().contains(&"entry-defaults"), "{report}");
+    for (name, _) in checks(Slot::ContactModel).into_iter().filter(|(name, _)| name.starts_with("entry-")) {
+        assert!(name == "entry-defaults" || liars.iter().any(|(_, caught)| *caught == name), "{name}");
+    }
+}
+
+#[test]
+fn a_silent_plugin_is_found_silent() {
+    assert_silent(concat!(module_path!(), "::a_silent_plugin_is_found_silent"), &[&HONEST]);
+}
+
+#[test]
+fn a_plugin_that_prints_is_caught() {
+    let name = concat!(module_path!(), "::a_plugin_that_prints_is_caught");
+    let caught = std::panic::catch_unwind(|| assert_silent(name, &[&liar!(Lie::Prints)]));
+    if let Err(payload) = caught {
+        let text = payload.downcast_ref::<String>().expect("an assertion's message");
+        assert!(text.contains("wrote to standard output") && text.contains("the friction is"), "{text}");
+    } else {
+        assert!(std::env::var_os("REGRASP_CONFORMANCE_CHILD").is_some(), "nothing was caught");
+    }
+}
