@@ -3,6 +3,7 @@
 use crate::args::VerifyArgs;
 use crate::table::Table;
 use crate::{Failure, say, say_json};
+use regrasp::api::Body;
 use regrasp::plan::Place;
 use regrasp::verify::Check;
 use serde_json::json;
@@ -50,10 +51,20 @@ pub fn place_text(place: &Place) -> String {
         place.time.map(|time| format!("{time:.2} s")),
         part("finger", place.finger),
         part("joint", place.joint),
-        place.pair.map(|(a, b)| format!("{a:?} and {b:?}")),
+        place.pair.map(|(a, b)| format!("{} and {}", body(a), body(b))),
         place.note.clone(),
     ];
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+fn body(body: Body) -> String {
+    match body {
+        Body::Palm => "palm".into(),
+        Body::Object => "object".into(),
+        Body::Obstacle(index) => format!("obstacle {index}"),
+        Body::Link(finger, link) => format!("link {link} of finger {}", finger.0),
+        Body::Fingertip(finger) => format!("tip of finger {}", finger.0),
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,219 @@
+//! House rules that the compiler does not know: who may depend on whom, how long a file may be, what a library may not do.
+
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Which packages of this project a package may use directly; `ARCHITECTURE.md` says why.
+const ARROWS: &[(&str, &[&str])] = &[
+    ("regrasp-api", &[]),
+    ("regrasp-world", &["regrasp-api"]),
+    ("regrasp-plan", &["regrasp-api"]),
+    ("regrasp-host", &["regrasp-api"]),
+    ("regrasp-planner", &["regrasp-api", "regrasp-plan"]),
+    ("regrasp-verify", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
+    ("regrasp-conformance", &["regrasp-api", "regrasp-world"]),
+];
+
+/// Packages that may use everything but the command line.
+const FREE: &[&str] = &["regrasp-study", "regrasp"];
+
+/// Heavy or opinionated packages, and the only ones of ours that may use them directly.
+const PRIVATE: &[(&str, &[&str])] = &[
+    ("parry3d-f64", &["regrasp-world", "regrasp-verify"]),
+    ("clarabel", &["regrasp-verify", "regrasp-stability-tests"]),
+    ("rayon", &["regrasp-planner"]),
+    ("inventory", &["regrasp-api", "regrasp-host", "plugins"]),
+    ("toml", &["regrasp-study", "regrasp"]),
+    ("clap", &["regrasp"]),
+    ("rapier3d-f64", &[]),
+    ("faer", &[]),
+    ("rand", &[]),
+];
+
+/// The most lines of a Rust file.
+const MAX_LINES: usize = 400;
+
+/// Files that may be longer, each with its reason.
+const LONGER: &[(&str, &str)] = &[];
+
+/// What a library may not touch: output, environment, wall clock, global random state.
+const FORBIDDEN: &[&str] =
+    &["println!", "print!(", "dbg!", "std::env", "env::var", "SystemTime", "Instant::now", "thread_rng"];
+
+/// Files that only speak of what is forbidden, each with its reason.
+const SPEAKS_OF: &[(&str, &str)] =
+    &[("framework/conformance/src/silence.rs", "starts a test again in a child process, to hear whether a plugin prints")];
+
+struct Package {
+    name: String,
+    is_plugin: bool,
+    uses: BTreeSet<String>,
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn packages() -> Vec<Package> {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--no-deps", "--offline"])
+        .current_dir(root())
+        .output()
+        .expect("cargo runs, since it runs this test");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: Value = serde_json::from_slice(&output.stdout).expect("cargo writes JSON");
+    let packages = metadata["packages"].as_array().expect("a list of packages");
+    packages.iter().map(package).collect()
+}
+
+fn package(value: &Value) -> Package {
+    let text = |value: &Value| value.as_str().expect("a text").to_owned();
+    let manifest = PathBuf::from(text(&value["manifest_path"]));
+    let dependencies = value["dependencies"].as_array().expect("a list of dependencies");
+    // Only normal dependencies count: `kind` is null for them.
+    let normal = dependencies.iter().filter(|dependency| dependency["kind"].is_null());
+    Package {
+        name: text(&value["name"]),
+        is_plugin: manifest.starts_with(root().join("plugins")),
+        uses: normal.map(|dependency| text(&dependency["name"])).collect(),
+    }
+}
+
+/// The packages of ours that `package` may use; `None` for all.
+fn allowed(package: &Package) -> Option<BTreeSet<&'static str>> {
+    if FREE.contains(&package.name.as_str()) {
+        return None;
+    }
+    if package.is_plugin {
+        return Some(["regrasp-api"].into());
+    }
+    let arrows: BTreeMap<_, _> = ARROWS.iter().copied().collect();
+    let uses = arrows.get(package.name.as_str());
+    let uses = uses.unwrap_or_else(|| panic!("`{}` is new: add its arrows to tests/tidy.rs", package.name));
+    Some(uses.iter().copied().collect())
+}
+
+#[test]
+fn packages_use_only_what_their_arrows_allow() {
+    let packages = packages();
+    assert!(packages.len() > 13, "metadata of the whole workspace");
+    for package in &packages {
+        let ours = package.uses.iter().filter(|name| name.starts_with("regrasp"));
+        let Some(allowed) = allowed(package) else {
+            assert!(ours.clone().all(|name| name != "regrasp"), "`{}` uses the command line", package.name);
+            continue;
+        };
+        let wrong: Vec<&String> = ours.filter(|name| !allowed.contains(name.as_str())).collect();
+        assert!(wrong.is_empty(), "`{}` may not use {wrong:?} (see ARCHITECTURE.md)", package.name);
+    }
+}
+
+#[test]
+fn heavy_dependencies_stay_where_they_are_needed() {
+    for package in packages() {
+        for (heavy, users) in PRIVATE {
+            let may =
+                users.contains(&package.name.as_str()) || package.is_plugin && users.contains(&"plugins");
+            assert!(may || !package.uses.contains(*heavy), "`{}` may not use `{heavy}`", package.name);
+        }
+    }
+}
+
+/// Every Rust file of the project, relative to its root.
+fn rust_files() -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    let rooms = ["benches", "examples", "framework", "plugins", "src", "tests"];
+    rooms
+        .iter()
+        .map(|room| root().join(room))
+        .filter(|room| room.is_dir())
+        .for_each(|room| walk(&room, &mut files));
+    files.sort();
+    files
+}
+
+fn walk(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("the project's folders can be read") {
+        let path = entry.expect("the project's folders can be read").path();
+        if path.is_dir() && !path.ends_with("target") {
+            walk(&path, files);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path.strip_prefix(root()).expect("below the root").to_owned());
+        }
+    }
+}
+
+fn read(file: &Path) -> String {
+    fs::read_to_string(root().join(file)).expect("the project's files are UTF-8")
+}
+
+#[test]
+fn files_hold_one_idea_each() {
+    let files = rust_files();
+    assert!(files.len() > 60, "only {} files were found", files.len());
+    let lines = |file: &PathBuf| read(file).lines().count();
+    let excused = |file: &PathBuf| LONGER.iter().any(|(name, _)| Path::new(name) == file);
+    let long: Vec<String> = files
+        .iter()
+        .filter(|file| !excused(file) && lines(file) > MAX_LINES)
+        .map(|file| format!("{} ({} lines)", file.display(), lines(file)))
+        .collect();
+    assert!(long.is_empty(), "more than {MAX_LINES} lines: {}", long.join(", "));
+}
+
+#[test]
+fn the_list_of_longer_files_is_not_out_of_date() {
+    for (name, reason) in LONGER {
+        let lines = read(Path::new(name)).lines().count();
+        assert!(lines > MAX_LINES, "{name} has {lines} lines and needs no excuse ({reason})");
+    }
+}
+
+/// The part of a library's file that is not its tests.
+fn library_code(file: &Path) -> Option<String> {
+    let parts: Vec<&str> = file.iter().filter_map(|part| part.to_str()).collect();
+    let is_library = matches!(parts.first(), Some(&"framework" | &"plugins")) && parts.get(2) == Some(&"src");
+    let is_test = parts.iter().any(|part| ["tests", "tests.rs", "test_plugins.rs"].contains(part));
+    let text = (is_library && !is_test).then(|| read(file))?;
+    let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+    Some(lines.collect::<Vec<_>>().join("\n"))
+}
+
+#[test]
+fn libraries_print_nothing_and_own_no_clock_environment_or_random_state() {
+    let speaks_of = |file: &PathBuf| SPEAKS_OF.iter().any(|(name, _)| Path::new(name) == file);
+    let files: Vec<PathBuf> = rust_files().into_iter().filter(|file| !speaks_of(file)).collect();
+    let code: Vec<(&PathBuf, String)> =
+        files.iter().filter_map(|file| Some((file, library_code(file)?))).collect();
+    assert!(code.len() > 40, "only {} library files were found", code.len());
+    let uses = |(file, code): &(&PathBuf, String)| {
+        let word = FORBIDDEN.iter().find(|word| code.contains(**word))?;
+        Some(format!("{} contains `{word}`", file.display()))
+    };
+    let wrong: Vec<String> = code.iter().filter_map(uses).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join(", "));
+}
+
+#[test]
+fn the_planner_names_no_plugin() {
+    let ids = ["pcwf", "force-closure", "rlg", "interleaved", "geodesic\"", "local-planner/"];
+    for file in rust_files().into_iter().filter(|file| file.starts_with("framework/planner/src")) {
+        let Some(code) = library_code(&file) else { continue };
+        for id in ids {
+            assert!(!code.contains(id), "{} names the plugin `{id}`", file.display());
+        }
+    }
+}
+
+#[test]
+fn no_file_sets_a_target_cpu() {
+    // rustc 1.95 (LLVM 22) miscompiles plain f64 code at opt-level 3 with AVX2 (see `tests/compiler.rs`).
+    for file in ["Cargo.toml", ".cargo/config.toml", ".cargo/config", ".ci/run"] {
+        let text = fs::read_to_string(root().join(file)).unwrap_or_default();
+        assert!(!text.contains("target-cpu"), "{file} sets a target-cpu");
+    }
+}
