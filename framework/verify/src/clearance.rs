@@ -18,6 +18,8 @@ use regrasp_plan::{Extreme, Place};
 
 /// How often a step between samples is halved before the clearance there counts as not certified: what remains is a hundredth of the step.
 const HALVINGS: u32 = 7;
+/// The same over the whole plan.
+const MOST_HALVINGS: usize = 100_000;
 /// Meshes with more vertices than this are not searched for separating planes: the tree is faster.
 const MOST_SUPPORT_VERTICES: usize = 3000;
 
@@ -34,6 +36,8 @@ pub(crate) struct ClearanceCheck<'s> {
     directions: Vec<Vec3>,
     /// Room for halved steps.
     spare: Frames,
+    /// How many more halvings there may be: a plan that needs as many is no plan of ours.
+    halvings_left: usize,
 }
 
 /// A pair on one step of the plan.
@@ -57,6 +61,7 @@ impl<'s> ClearanceCheck<'s> {
             lower: vec![f64::NEG_INFINITY; scene.pairs.len()],
             directions: vec![Vec3::zeros(); scene.pairs.len()],
             spare: Frames::new(hand),
+            halvings_left: MOST_HALVINGS,
         }
     }
 
@@ -149,10 +154,11 @@ impl<'s> ClearanceCheck<'s> {
         }
         let middle = (from.0 + to.0) / 2.0;
         let place = || step.leg.between(step.state, middle);
-        if depth == HALVINGS {
+        if depth == HALVINGS || self.halvings_left == 0 {
             self.take(step.pair, bound, place);
             return;
         }
+        self.halvings_left -= 1;
         let mut frames = std::mem::replace(&mut self.spare, Frames::empty());
         frames.place(self.hand, step.leg, step.state, middle);
         let distance = self.exact(step.pair, &frames, false);

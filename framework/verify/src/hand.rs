@@ -135,3 +135,48 @@ impl Joint {
         Ok(Self { kind: joint.kind, X_PJ, axis, lower, upper, velocity, acceleration })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A base turned by 90° about z, a revolute joint about y, a prismatic one along x, one link of 0.3 m.
+    fn finger() -> FingerDescription {
+        let text = r#"{
+            "name": "f", "tip": [0.3, 0, 0], "rest": [0, 0],
+            "base": {"position": [1, 2, 3], "axis": [0, 0, 1], "angle_deg": 90},
+            "joint": [
+                {"name": "a", "axis": [0, 2, 0], "lower": -2, "upper": 2},
+                {"name": "b", "kind": "prismatic", "origin": {"position": [0.5, 0, 0]}, "axis": [1, 0, 0], "lower": -0.1, "upper": 0.1}
+            ]
+        }"#;
+        serde_json::from_str(text).unwrap()
+    }
+
+    #[test]
+    fn frames_follow_the_chain() {
+        let chain = Chain::new(&finger(), 0).unwrap();
+        let mut frames = [Pose::identity(); 2];
+        chain.frames(&[std::f64::consts::FRAC_PI_2, 0.1], &mut frames);
+        // About y by 90°, x becomes -z; the base turns the rest: 0.5 + 0.1 + 0.3 m straight down from the base.
+        let tip = frames[1] * nalgebra::Point3::from(chain.p_LTip);
+        assert!((tip.coords - Vec3::new(1.0, 2.0, 3.0 - 0.9)).norm() < 1e-12, "{tip}");
+    }
+
+    #[test]
+    fn levers_bound_every_motion() {
+        let chain = Chain::new(&finger(), 0).unwrap();
+        let levers = chain.levers(1, 0.3, &[2.0, 0.1]);
+        assert!((levers[0] - 0.9).abs() < 1e-12 && levers[1] == 1.0, "{levers:?}");
+        assert_eq!(levers[2..], [0.0; MAX_FINGER_JOINTS - 2]);
+    }
+
+    #[test]
+    fn chains_without_sense_are_refused() {
+        let mut finger = finger();
+        finger.joint[1].axis = [0.0; 3];
+        assert!(Chain::new(&finger, 0).unwrap_err().contains("`b`"));
+        finger.joint.clear();
+        assert!(Chain::new(&finger, 0).is_err());
+    }
+}

@@ -266,3 +266,6 @@ fn parry_pose(X: &Pose) -> ParryPose {
     let q = X.rotation.coords;
     ParryPose::from_parts(vector(&X.translation.vector), Rot3::from_xyzw(q.x, q.y, q.z, q.w))
 }
+
+#[cfg(test)]
+mod tests;
