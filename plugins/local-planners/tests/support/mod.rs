@@ -202,3 +202,17 @@ pub fn nearby(X_HO: &Pose, random: &mut Random, distance: f64, angle: f64) -> Po
     let p = X_HO.translation.vector + random.direction() * random.range(0.0, distance);
     Pose::from_parts(p.into(), turn * X_HO.rotation)
 }
+
+/// Fingers in turn touching the object along these directions from its centre.
+pub fn touching_along(bench: &Bench, X_HO: &Pose, directions: &[Vec3]) -> Configuration {
+    let count = bench.hand.finger_count();
+    let joints = PerFinger::from_fn(count, |finger| bench.hand.finger(finger).rest);
+    let mut q = Configuration { X_HO: *X_HO, joints, contacts: PerFinger::filled(count, None) };
+    for (finger, direction) in FingerSet::first(count).iter().zip(directions) {
+        let contact = bench.surface.project(&(direction * 0.1), None).contact;
+        let p_HF = geometry::to_hand(X_HO, &contact.tip_center(bench.radius()));
+        q.joints[finger] = bench.hand.inverse(finger, &p_HF, &q.joints[finger]).unwrap();
+        q.contacts[finger] = Some(contact);
+    }
+    q
+}
