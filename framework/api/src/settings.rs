@@ -11,6 +11,10 @@ pub trait Settings: Serialize + DeserializeOwned + schemars::JsonSchema + Defaul
     /// Reads and checks settings from JSON text; the empty text stands for the defaults.
     fn from_json(text: &str) -> Result<Self, SettingsError> {
         let text = if text.trim().is_empty() { "{}" } else { text };
+        // serde would read a list as the fields in their order.
+        if !text.trim_start().starts_with('{') {
+            return Err(SettingsError::Form("settings are a table of keys and values".into()));
+        }
         let settings: Self =
             serde_json::from_str(text).map_err(|error| SettingsError::Form(error.to_string()))?;
         settings.validate()?;
@@ -68,5 +72,6 @@ mod tests {
         assert!(NoSettings::from_json("").is_ok());
         let error = NoSettings::from_json(r#"{"edges": 3}"#).unwrap_err().to_string();
         assert!(error.contains("edges"), "{error}");
+        assert!(NoSettings::from_json("[1]").is_err());
     }
 }
