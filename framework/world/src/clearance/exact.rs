@@ -2,7 +2,7 @@
 
 use super::rod::{Bounds, Rod};
 use parry3d_f64::math::{Pose as ParryPose, Rot3, Vector};
-use parry3d_f64::query::{self, PointQuery};
+use parry3d_f64::query::{self, PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::{Ball, Capsule, Cuboid, Segment, Shape, TriMesh, TriMeshFlags};
 use regrasp_api::{Mesh, Pose, Vec3};
 use std::sync::Arc;
@@ -43,8 +43,17 @@ impl MeshSolid {
 
     /// Signed distance of a point (m), negative inside.
     pub fn signed_distance(&self, p: &Vec3) -> f64 {
+        self.signed_distance_within(p, f64::MAX)
+    }
+
+    /// Signed distance of a point (m) that is known to be at most `limit` (m) from the surface, which makes it cheaper.
+    pub fn signed_distance_within(&self, p: &Vec3, limit: f64) -> f64 {
         let p = to_glam(p);
-        let projection = self.surface.project_local_point(p, false);
+        let limit = limit * (1.0 + 1e-9);
+        let projection = self
+            .surface
+            .project_local_point_and_get_location_with_max_dist(p, false, limit)
+            .map_or_else(|| self.surface.project_local_point(p, false), |(projection, _)| projection);
         let distance = (p - projection.point).length();
         if projection.is_inside { -distance } else { distance }
     }

@@ -18,7 +18,7 @@ pub(crate) struct Field {
     grid: Bounds,
     cell: f64,
     counts: [usize; 3],
-    /// x runs fastest (m).
+    /// Signed distances at the cells' centres (m), x running fastest; more than a cell deep inside, upper bounds of them.
     values: Vec<f64>,
 }
 
@@ -35,10 +35,18 @@ impl Field {
         let counts: [usize; 3] = size.map(|length| (length / cell).ceil().max(1.0) as usize).into();
         let mut values = Vec::with_capacity(counts.iter().product());
         for (k, j) in (0..counts[2]).flat_map(|k| (0..counts[1]).map(move |j| (k, j))) {
+            let mut before = f64::INFINITY;
             for i in 0..counts[0] {
                 let center =
                     grid.lower + (Vec3::new(i as f64, j as f64, k as f64) + Vec3::repeat(0.5)) * cell;
-                values.push(solid.signed_distance(&center));
+                // Deep inside, "deeper than this" is enough: every rod there is close.
+                let deep = before + cell < -cell;
+                before = if deep {
+                    before + cell
+                } else {
+                    solid.signed_distance_within(&center, before.abs() + cell)
+                };
+                values.push(before);
             }
         }
         Self { solid, grid, cell, counts, values }

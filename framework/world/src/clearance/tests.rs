@@ -1,8 +1,10 @@
+use super::exact::{MeshSolid, Solid};
+use super::rod::Rod;
 use super::*;
 use crate::object::primitive_mesh;
 use regrasp_api::{
-    HandDescription, MAX_FINGERS, Mesh, PlacedShape, PoseDescription, Primitive, Random, Rotation, Shape,
-    Vec3,
+    HandDescription, MAX_FINGERS, Mesh, PerFinger, PlacedShape, PoseDescription, Primitive, Random, Rotation,
+    Shape, Vec3,
 };
 
 const CLEARANCE: f64 = 5e-4;
@@ -104,8 +106,6 @@ fn random_configuration(hand: &ChainHand, random: &mut Random) -> Configuration 
     let X_HO = Pose::from_parts(p.into(), random.rotation());
     Configuration { X_HO, joints, contacts: PerFinger::filled(count, None) }
 }
-
-use regrasp_api::PerFinger;
 
 /// Whether the answer agrees with the exact distances of the pairs that it is about; undecided where they are within rounding.
 fn check(answer: Result<(), BodyPair>, exact: &[PairDistance], about: impl Fn(&BodyPair) -> bool) -> bool {
@@ -237,5 +237,89 @@ fn a_turn_of_everything_that_is_not_the_hand_changes_nothing_for_the_object() {
             let X_HO = Pose::from_parts((random.direction() * 0.02).into(), random.rotation());
             assert_eq!(straight.object_free(&X_HO), turned.object_free(&(turn * X_HO)));
         }
+    }
+}
+
+/// A mesh of a box with its edges along the axes.
+fn box_mesh(half_size: Vec3) -> Solid {
+    Solid::Mesh(Arc::new(MeshSolid::new(&primitive_mesh(&Primitive::Cuboid { half_size }, 12).unwrap())))
+}
+
+#[test]
+fn exact_distances_of_all_shapes_are_the_closed_forms() {
+    let half_size = Vec3::new(0.1, 0.2, 0.3);
+    let ball = Solid::Rod(Rod::ball(Vec3::new(0.0, 0.0, 0.05), 0.02));
+    let rod = Solid::Rod(Rod::new(Vec3::new(0.0, 0.0, -0.1), Vec3::new(0.0, 0.0, 0.1), 0.03));
+    let cuboid = Solid::Cuboid { half_size };
+    let floor = Solid::HalfSpace { normal: Vec3::z(), offset: -1.0 };
+    let mesh = box_mesh(half_size);
+    let shapes = [&ball, &rod, &cuboid, &mesh];
+    // The reach of each along ±x and the gap below it.
+    let (across, low) = ([0.02, 0.03, 0.1, 0.1], [0.03, -0.13, -0.3, -0.3]);
+    for (a, &shape_a) in shapes.iter().enumerate() {
+        for (b, &shape_b) in shapes.iter().enumerate() {
+            for apart in [0.4, 0.7] {
+                let (X_HA, X_HB) =
+                    (Pose::translation(3.0, 1.0, 1.0), Pose::translation(3.0 - apart, 1.0, 1.0));
+                let distance = exact::distance(shape_a, &X_HA, shape_b, &X_HB);
+                assert!((distance - (apart - across[a] - across[b])).abs() < 1e-9, "{a} {b}: {distance}");
+            }
+            assert_eq!(
+                exact::distance(shape_a, &Pose::identity(), shape_b, &Pose::translation(0.0, 0.0, 0.01)),
+                0.0
+            );
+        }
+        let high = Pose::translation(0.3, 0.2, 0.5);
+        for (one, other) in
+            [((&floor, Pose::identity()), (shape_a, high)), ((shape_a, high), (&floor, Pose::identity()))]
+        {
+            let distance = exact::distance(one.0, &one.1, other.0, &other.1);
+            assert!((distance - (1.5 + low[a])).abs() < 1e-12, "{a}: {distance}");
+        }
+        assert_eq!(
+            exact::distance(&floor, &Pose::identity(), shape_a, &Pose::translation(0.0, 0.0, -2.0)),
+            0.0
+        );
+    }
+}
+
+#[test]
+fn bodies_wholly_inside_a_mesh_have_distance_zero() {
+    let large = box_mesh(Vec3::repeat(1.0));
+    let inside = Pose::translation(0.3, -0.2, 0.1);
+    let small = Vec3::repeat(0.05);
+    let solids =
+        [Solid::Rod(Rod::ball(Vec3::zeros(), 0.01)), Solid::Cuboid { half_size: small }, box_mesh(small)];
+    for solid in &solids {
+        assert_eq!(exact::distance(&large, &Pose::identity(), solid, &inside), 0.0);
+        assert_eq!(exact::distance(solid, &inside, &large, &Pose::identity()), 0.0);
+    }
+    let Solid::Mesh(mesh) = &large else { unreachable!() };
+    assert!(!mesh.clear_of_rod(&Rod::new(inside.translation.vector, Vec3::zeros(), 0.01), 1e-3));
+    assert!((mesh.signed_distance(&Vec3::new(0.9, 0.2, 0.3)) + 0.1).abs() < 1e-12);
+}
+
+#[test]
+fn bounds_decide_nearly_always() {
+    for (form, allowed) in [
+        (Primitive::Sphere { radius: 0.03 }, 20),
+        (Primitive::Ellipsoid { semi_axes: Vec3::new(0.04, 0.025, 0.02) }, 20),
+        (Primitive::Cuboid { half_size: Vec3::new(0.02, 0.0225, 0.03) }, 0),
+        (Primitive::Cylinder { radius: 0.02, half_height: 0.03 }, 20),
+        (Primitive::Capsule { radius: 0.02, half_height: 0.02 }, 20),
+    ] {
+        let mesh = primitive_mesh(&form, 1280).unwrap();
+        let planes = (0..mesh.facets().len() as u32)
+            .map(|f| (mesh.normal(f), mesh.normal(f).dot(&mesh.corners(f)[0])));
+        let convex = convex::Convex::around(form, planes).unwrap();
+        let mut random = Random::from_key(11, 0, 0, 0);
+        let mut counts = [0; 3];
+        for _ in 0..1000 {
+            let start = random.direction() * random.range(0.0, 0.06);
+            let rod = Rod::new(start, start + random.direction() * 0.05, 0.008);
+            counts[convex.verdict(&rod, CLEARANCE) as usize] += 1;
+        }
+        let [free, close, unknown] = counts;
+        assert!(free > 100 && close > 100 && unknown <= allowed, "{form:?}: {counts:?}");
     }
 }

@@ -1,1 +1,138 @@
+use super::*;
+use regrasp_api::{
+    Clearance, Configuration, FingerGrasp, FingerSet, GoalDescription, Hand, HandDescription, MeshSource,
+    ObjectDescription, ObjectShape, ObstacleDescription, PerFinger, PlacedShape, PoseDescription, Shape,
+    StartDescription, Workspace,
+};
 
+fn four_finger() -> HandDescription {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/hands/four-finger.toml");
+    toml::from_str(&std::fs::read_to_string(file).unwrap()).unwrap()
+}
+
+fn pose(position: [f64; 3]) -> PoseDescription {
+    PoseDescription { position, ..Default::default() }
+}
+
+fn problem() -> Problem {
+    let shape = ObjectShape::Sphere { radius: 0.03, facets: 1280 };
+    Problem {
+        hand: four_finger(),
+        object: ObjectDescription { name: "ball".into(), shape, mass: 0.1, friction: 0.8 },
+        obstacle: vec![obstacle(""), obstacle("bar")],
+        gravity: [0.0, 0.0, -9.81],
+        start: StartDescription { pose: pose([0.0, 0.0, 0.085]), grasp: None },
+        goal: vec![GoalDescription { pose: pose([0.0, 0.01, 0.095]), grasp: None }],
+        workspace: None,
+        limits: Default::default(),
+    }
+}
+
+fn obstacle(name: &str) -> ObstacleDescription {
+    let shape = Shape::Capsule { from: [0.045, 0.0, 0.075], to: [0.045, 0.0, 0.2], radius: 0.008 };
+    ObstacleDescription { name: name.into(), shape, pose: pose([0.1, 0.0, 0.0]) }
+}
+
+#[test]
+fn a_sound_problem_becomes_a_world() {
+    let world = World::new(&problem(), Path::new("")).unwrap();
+    assert_eq!(world.obstacle_names, ["obstacle 1", "bar"]);
+    assert_eq!((world.hand.finger_count(), world.object.mesh.facets().len()), (4, 1280));
+    assert_eq!(world.start.translation.vector.z, 0.085);
+    let (lower, upper) = world.workspace;
+    assert!((lower - Vec3::new(-0.015, -0.015, 0.07)).norm() < 1e-12);
+    assert!((upper - Vec3::new(0.015, 0.025, 0.11)).norm() < 1e-12);
+    let q = Configuration {
+        X_HO: world.start,
+        joints: PerFinger::from_fn(4, |finger| world.hand.finger(finger).rest),
+        contacts: PerFinger::filled(4, None),
+    };
+    assert_eq!(world.clearance.configuration_free(&q, FingerSet::first(4), true), Ok(()));
+}
+
+/// The message with which a changed problem is refused.
+fn refusal(change: impl FnOnce(&mut Problem)) -> String {
+    let mut changed = problem();
+    change(&mut changed);
+    World::new(&changed, Path::new("")).err().expect("the problem is refused").to_string()
+}
+
+#[test]
+fn every_fault_is_refused_by_its_key() {
+    let grasp = |count| Some(vec![FingerGrasp { contact: None, joints: Some(vec![0.0; 2]) }; count]);
+    let messages = [
+        (
+            refusal(|p| p.obstacle[1].shape = Shape::Sphere { radius: -1.0 }),
+            "`obstacle[1].shape.radius` = -1",
+        ),
+        (refusal(|p| p.obstacle[0].name = "bar".into()), "`obstacle[1].name`"),
+        (refusal(|p| p.obstacle[0].pose.angle_deg = Some(3.0)), "`obstacle[0].pose`"),
+        (
+            refusal(|p| p.obstacle[0].shape = Shape::Box { size: [1.0, f64::NAN, 1.0] }),
+            "`obstacle[0].shape.size[1]` = NaN",
+        ),
+        (refusal(|p| p.obstacle[0].shape = half_space([0.0; 3])), "`obstacle[0].shape.normal`"),
+        (refusal(|p| p.obstacle[0].shape = mesh("none.stl")), "none.stl"),
+        (refusal(|p| p.hand.palm[0].shape = mesh("none.stl")), "`hand.palm[0].shape.file`"),
+        (refusal(|p| p.hand.finger[1].joint[2].link[0].shape = half_space([0.0, 0.0, 1.0])), "half-space"),
+        (refusal(|p| p.hand.finger[0].joint[0].upper = f64::INFINITY), "in `hand`"),
+        (refusal(|p| p.object.mass = 0.0), "`object.mass` = 0"),
+        (refusal(|p| p.object.shape = ball(30.0)), "lengths multiplied by 0.001"),
+        (refusal(|p| p.object.shape = ball(30e-6)), "lengths multiplied by 1000"),
+        (refusal(|p| p.start.pose.position[2] = f64::NAN), "`start.pose`"),
+        (refusal(|p| p.goal.clear()), "`goal`: at least one"),
+        (refusal(|p| p.goal.push(p.goal[0].clone())), "`goal[1]`: it coincides with `goal[0]`"),
+        (refusal(|p| p.goal[0].grasp = grasp(3)), "`goal[0].grasp`: 3 entries"),
+        (refusal(|p| p.start.grasp = grasp(4)), "`start.grasp[0].joints`"),
+        (refusal(|p| p.gravity[1] = f64::NAN), "`gravity[1]` = NaN"),
+        (
+            refusal(|p| p.workspace = Some(Workspace { lower: [0.0; 3], upper: [1.0, -1.0, 1.0] })),
+            "`workspace.upper[1]` = -1",
+        ),
+        (refusal(|p| p.limits.resolution.friction_margin = 0.0), "`limits.resolution.friction_margin` = 0"),
+        (refusal(|p| p.limits.tolerances.slip = -1.0), "`limits.tolerances.slip` = -1"),
+        (refusal(|p| p.limits.budget.max_nodes = 0), "`limits.budget.max_nodes` = 0"),
+        (refusal(|p| p.limits.budget.time_limit = Some(f64::NAN)), "`limits.budget.time_limit` = NaN"),
+    ];
+    for (message, part) in messages {
+        assert!(message.contains(part), "{message} lacks {part}");
+    }
+}
+
+fn half_space(normal: [f64; 3]) -> Shape {
+    Shape::HalfSpace { normal, offset: 0.0 }
+}
+
+fn ball(radius: f64) -> ObjectShape {
+    ObjectShape::Sphere { radius, facets: 1280 }
+}
+
+fn mesh(file: &str) -> Shape {
+    Shape::Mesh(MeshSource { file: Some(file.into()), ..Default::default() })
+}
+
+#[test]
+fn a_mesh_in_millimetres_is_refused_with_the_scale_to_use_and_stands_alone_when_embedded() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = String::new();
+    let cube =
+        crate::primitive_mesh(&regrasp_api::Primitive::Cuboid { half_size: Vec3::repeat(22.5) }, 12).unwrap();
+    cube.vertices().iter().for_each(|v| text.push_str(&format!("v {} {} {}\n", v.x, v.y, v.z)));
+    cube.facets().iter().for_each(|[a, b, c]| text.push_str(&format!("f {} {} {}\n", a + 1, b + 1, c + 1)));
+    std::fs::write(folder.path().join("cube.obj"), text).unwrap();
+    let mut problem = problem();
+    problem.object.shape =
+        ObjectShape::Mesh(MeshSource { file: Some("cube.obj".into()), ..Default::default() });
+    let message = World::new(&problem, folder.path()).err().unwrap().to_string();
+    assert!(message.contains("`scale = 0.001`"), "{message}");
+    let scaled = MeshSource { file: Some("cube.obj".into()), scale: Some(0.001), ..Default::default() };
+    problem.object.shape = ObjectShape::Mesh(scaled.clone());
+    problem.obstacle[0].shape = Shape::Mesh(scaled.clone());
+    problem.hand.palm.push(PlacedShape { shape: Shape::Mesh(scaled.clone()), pose: pose([0.0, 0.0, -0.1]) });
+    problem.hand.finger[0].joint[1].link[0].shape = Shape::Mesh(MeshSource { scale: Some(0.0002), ..scaled });
+    let alone = embed_problem(&problem, folder.path()).unwrap();
+    let (from_files, from_plan) =
+        (World::new(&problem, folder.path()).unwrap(), World::new(&alone, Path::new("/nowhere")).unwrap());
+    assert_eq!(from_files.object.mesh, from_plan.object.mesh);
+    assert_eq!(embed_problem(&alone, Path::new("/nowhere")).unwrap(), alone);
+}
