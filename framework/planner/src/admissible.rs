@@ -1,7 +1,8 @@
 //! Which configurations may become nodes.
 
 use regrasp_api::{
-    Admissible, CallError, Configuration, Context, FingerIndex, FingerSet, Reason, Slot, Task, TipRule,
+    Admissible, CallError, Configuration, Context, FingerIndex, FingerSet, LoneFinger, Reason, Slot, Task,
+    TipRule,
 };
 
 /// Admits configurations that can be left by transfers and regrasps.
@@ -21,21 +22,18 @@ impl Admissible for Leavable {
         placed: FingerSet,
         _context: &mut Context<'_>,
     ) -> Result<Option<Reason>, CallError> {
+        let lone = task.clearance.lone_finger(finger, q, placed);
         let Some(contact) = q.contacts[finger] else {
-            let clear = TipRule::Clear(task.resolution.clearance);
-            return Ok(if stands_free(task, q, finger, placed, clear) {
-                None
-            } else {
-                Some(Reason::Collision)
-            });
+            let free = lone.free(&q.joints[finger], TipRule::Clear(task.resolution.clearance)).is_ok();
+            return Ok(if free { None } else { Some(Reason::Collision) });
         };
         if task.surface.edge_distance(&contact) < task.resolution.edge_margin {
             return Ok(Some(Reason::Edge));
         }
-        if !stands_free(task, q, finger, placed, TipRule::Touches) {
+        if lone.free(&q.joints[finger], TipRule::Touches).is_err() {
             return Ok(Some(Reason::Collision));
         }
-        Ok(if retreats(task, q, finger, placed) { None } else { Some(Reason::Retreat) })
+        Ok(if retreats(task, q, finger, &*lone) { None } else { Some(Reason::Retreat) })
     }
 
     fn admit_grasp(
@@ -56,30 +54,14 @@ impl Admissible for Leavable {
     }
 }
 
-/// Whether `finger` at `q` is free of everything fixed, of the object (by `tip`) and of the fingers in `placed`.
-fn stands_free(
-    task: &Task<'_>,
-    q: &Configuration,
-    finger: FingerIndex,
-    placed: FingerSet,
-    tip: TipRule,
-) -> bool {
-    let joints = &q.joints[finger];
-    task.clearance.finger_free(finger, joints, &q.X_HO, tip).is_ok()
-        && placed
-            .iter()
-            .all(|other| task.clearance.fingers_free((finger, joints), (other, &q.joints[other])).is_ok())
-}
-
 /// Whether the finger can stand at every retreat height above its contact, along the normal.
-fn retreats(task: &Task<'_>, q: &Configuration, finger: FingerIndex, placed: FingerSet) -> bool {
+fn retreats(task: &Task<'_>, q: &Configuration, finger: FingerIndex, lone: &dyn LoneFinger) -> bool {
     let radius = task.hand.fingertip_radius();
-    let mut there = q.clone();
+    let mut near = q.joints[finger];
     task.resolution.retreat.iter().all(|&height| {
         let Some(p_HF) = q.contact_tip_center(finger, radius + height) else { return true };
-        let Some(joints) = task.hand.inverse(finger, &p_HF, &there.joints[finger]) else { return false };
-        there.joints[finger] = joints;
-        let clear = TipRule::Clear(task.resolution.clearance.min(height));
-        stands_free(task, &there, finger, placed, clear)
+        let Some(joints) = task.hand.inverse(finger, &p_HF, &near) else { return false };
+        near = joints;
+        lone.free(&joints, TipRule::Clear(task.resolution.clearance.min(height))).is_ok()
     })
 }

@@ -93,7 +93,7 @@ pub struct Budget {
 
 impl Default for Budget {
     fn default() -> Self {
-        Self { max_nodes: 5000, time_limit: None, smoothing: 6 }
+        Self { max_nodes: 5000, time_limit: None, smoothing: 2 }
     }
 }
 

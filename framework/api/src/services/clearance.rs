@@ -74,7 +74,42 @@ pub trait Clearance: Send + Sync {
         object_moved: bool,
     ) -> Result<(), BodyPair>;
 
+    /// One finger that moves while the object of `resting` and the fingers in `among` rest there: what rests is placed once,
+    /// for the many postures of one regrasp.
+    fn lone_finger<'a>(
+        &'a self,
+        finger: FingerIndex,
+        resting: &'a Configuration,
+        among: FingerSet,
+    ) -> Box<dyn LoneFinger + 'a> {
+        Box::new(Pairwise { clearance: self, finger, resting, among: among.without(finger) })
+    }
+
     /// The exact distances of all pairs that may not touch, at most `limit` (m) apart; for what is shown to a user.
     fn distances(&self, q: &Configuration, limit: f64) -> Vec<PairDistance>;
 }
 const _: Option<&dyn Clearance> = None; // must stay object safe
+
+/// One finger among resting bodies; see [`Clearance::lone_finger`].
+pub trait LoneFinger {
+    /// The finger at `joints` against palm, obstacles, its own links, the object and the resting fingers.
+    fn free(&self, joints: &FingerJoints, tip: TipRule) -> Result<(), BodyPair>;
+}
+const _: Option<&dyn LoneFinger> = None; // must stay object safe
+
+/// A lone finger checked pair by pair: right for every clearance, fast for none.
+struct Pairwise<'a, C: ?Sized> {
+    clearance: &'a C,
+    finger: FingerIndex,
+    resting: &'a Configuration,
+    among: FingerSet,
+}
+
+impl<C: Clearance + ?Sized> LoneFinger for Pairwise<'_, C> {
+    fn free(&self, joints: &FingerJoints, tip: TipRule) -> Result<(), BodyPair> {
+        self.clearance.finger_free(self.finger, joints, &self.resting.X_HO, tip)?;
+        self.among.iter().try_for_each(|other| {
+            self.clearance.fingers_free((self.finger, joints), (other, &self.resting.joints[other]))
+        })
+    }
+}

@@ -11,6 +11,7 @@ mod exact;
 mod field;
 mod finger;
 mod fixed;
+mod lone;
 mod object;
 mod report;
 mod rod;
@@ -22,8 +23,8 @@ use finger::{FingerBodies, PlacedFinger};
 use fixed::Fixed;
 use object::ObjectBody;
 use regrasp_api::{
-    Body, BodyPair, Clearance, Configuration, FingerIndex, FingerJoints, FingerSet, Hand, ObjectModel,
-    ObstacleDescription, PairDistance, Pose, TipRule,
+    Body, BodyPair, Clearance, Configuration, FingerIndex, FingerJoints, FingerSet, Hand, LoneFinger,
+    ObjectModel, ObstacleDescription, PairDistance, Pose, TipRule,
 };
 use smallvec::SmallVec;
 use std::path::Path;
@@ -162,6 +163,15 @@ impl Clearance for SceneClearance {
             }
         }
         if object_moved { self.object_free(&q.X_HO) } else { Ok(()) }
+    }
+
+    fn lone_finger<'a>(
+        &'a self,
+        finger: FingerIndex,
+        resting: &'a Configuration,
+        among: FingerSet,
+    ) -> Box<dyn LoneFinger + 'a> {
+        Box::new(lone::Lone::new(self, finger, resting, among.without(finger)))
     }
 
     fn distances(&self, q: &Configuration, limit: f64) -> Vec<PairDistance> {

@@ -1,7 +1,9 @@
 //! One finger that moves through free space while everything else rests.
 
 use crate::common::{Levers, bisection, largest_travel};
-use regrasp_api::{Configuration, Contact, FingerIndex, FingerJoints, Reason, Task, TipRule, Vec3};
+use regrasp_api::{
+    Configuration, Contact, FingerIndex, FingerJoints, FingerSet, LoneFinger, Reason, Task, TipRule, Vec3,
+};
 
 /// What stays the same during one regrasp.
 pub(crate) struct Flight<'a> {
@@ -11,11 +13,14 @@ pub(crate) struct Flight<'a> {
     pub finger: FingerIndex,
     /// Fingertip radius (m).
     pub radius: f64,
+    /// The finger among everything that rests.
+    lone: Box<dyn LoneFinger + 'a>,
 }
 
 impl<'a> Flight<'a> {
     pub fn new(task: &'a Task<'a>, levers: &'a Levers, from: &'a Configuration, finger: FingerIndex) -> Self {
-        Self { task, levers, from, finger, radius: task.hand.fingertip_radius() }
+        let lone = task.clearance.lone_finger(finger, from, FingerSet::first(from.joints.len()));
+        Self { task, levers, from, finger, radius: task.hand.fingertip_radius(), lone }
     }
 
     /// The fingertip's centre (m, in H) at a height (m) above a contact.
@@ -34,14 +39,7 @@ impl<'a> Flight<'a> {
 
     /// Whether the finger keeps clear of everything.
     pub fn free(&self, joints: &FingerJoints, tip: TipRule) -> bool {
-        let (clearance, finger) = (self.task.clearance, self.finger);
-        clearance.finger_free(finger, joints, &self.from.X_HO, tip).is_ok()
-            && self
-                .from
-                .joints
-                .iter()
-                .filter(|&(other, _)| other != finger)
-                .all(|other| clearance.fingers_free((finger, joints), (other.0, other.1)).is_ok())
+        self.lone.free(joints, tip).is_ok()
     }
 
     /// The distance (m) that bodies keep which may not touch.
