@@ -13,7 +13,7 @@ mod windows;
 use crate::closest::ClosestPoints;
 use crate::polyhedron::Polyhedron;
 use crate::sharp::SharpEdges;
-use bound::LowerBound;
+use bound::{Ball, LowerBound};
 use follow::Follower;
 use regrasp_api::{
     Build, BuildError, Built, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings,
@@ -85,6 +85,7 @@ pub struct Geodesic {
     polyhedron: Polyhedron,
     closest: ClosestPoints,
     sharp: SharpEdges,
+    balls: Vec<Ball>,
     /// Largest distance (m) between two places of the fingertip that are looked at on solids that are not convex.
     step: f64,
     /// Sum of the facets' areas up to and with each facet (m²).
@@ -108,6 +109,7 @@ impl Geodesic {
     pub fn new(settings: &GeodesicSettings, mesh: &Mesh, radius: f64) -> Result<Self, BuildError> {
         settings.validate()?;
         let polyhedron = Polyhedron::new(mesh);
+        let closest = ClosestPoints::new(&polyhedron);
         let mut sum = 0.0;
         let areas = (0..mesh.facets().len() as u32).map(|facet| {
             sum += mesh.area(facet);
@@ -118,7 +120,8 @@ impl Geodesic {
             radius,
             step: settings.step.min((radius / 5.0).max(1e-4)),
             areas: areas.collect(),
-            closest: ClosestPoints::new(&polyhedron),
+            balls: bound::inscribed_balls(&polyhedron, &closest),
+            closest,
             sharp: SharpEdges::new(&polyhedron, settings.sharp_angle_deg.to_radians()),
             polyhedron,
         })
@@ -175,7 +178,7 @@ impl SurfaceParam for Geodesic {
                 p_OP: contact.p_OC,
                 place: self.polyhedron.place(contact.facet, &contact.p_OC),
             };
-            let bound = LowerBound::new(to.p_OC);
+            let bound = LowerBound::new(&self.balls, &from.p_OC, &to.p_OC);
             let (start, target) = (site(from), site(to));
             let job =
                 Search::new(&self.polyhedron, search, bound, &target, self.settings.tolerance, f64::INFINITY);

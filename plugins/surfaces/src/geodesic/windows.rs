@@ -135,7 +135,7 @@ pub(super) struct Found {
 pub(super) struct Search<'a> {
     polyhedron: &'a Polyhedron,
     scratch: &'a mut Scratch,
-    bound: LowerBound<'a>,
+    bound: LowerBound,
     p_OT: Vec3,
     tolerance: f64,
     /// Windows at or above this length (m) are dropped.
@@ -148,7 +148,7 @@ impl<'a> Search<'a> {
     pub fn new(
         polyhedron: &'a Polyhedron,
         scratch: &'a mut Scratch,
-        bound: LowerBound<'a>,
+        bound: LowerBound,
         target: &Site,
         tolerance: f64,
         known: f64,
@@ -254,7 +254,8 @@ impl<'a> Search<'a> {
         if self.is_dominated(frame, &window) || self.scratch.start_facets.contains(&facet) {
             return;
         }
-        let key = straight.max(self.bound.through(frame, &window.source, window.ends, window.so_far));
+        let key =
+            straight.max(self.bound.through(frame, &window.source, window.ends, window.so_far, clamped));
         if key < self.limit {
             let index = self.add(window);
             self.scratch.queue.push(Queued { key, index });
