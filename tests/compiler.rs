@@ -6,6 +6,7 @@
 /// Whether the vectors span all of space with nonnegative weights: no plane through two of them has all others on one side.
 ///
 /// Written out, since the fault goes away where loops and products are functions of their own.
+#[expect(clippy::needless_range_loop, reason = "other loops hide the fault")]
 #[inline(never)]
 fn spans_positively(w: &[[f64; 3]; 6]) -> bool {
     for i in 0..6 {

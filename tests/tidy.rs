@@ -44,8 +44,10 @@ const FORBIDDEN: &[&str] =
     &["println!", "print!(", "dbg!", "std::env", "env::var", "SystemTime", "Instant::now", "thread_rng"];
 
 /// Files that only speak of what is forbidden, each with its reason.
-const SPEAKS_OF: &[(&str, &str)] =
-    &[("framework/conformance/src/silence.rs", "starts a test again in a child process, to hear whether a plugin prints")];
+const SPEAKS_OF: &[(&str, &str)] = &[(
+    "framework/conformance/src/silence.rs",
+    "starts a test again in a child process, to hear whether a plugin prints",
+)];
 
 struct Package {
     name: String,

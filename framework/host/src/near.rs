@@ -2,7 +2,8 @@
 
 /// The candidates that resemble `name`, best first, at most three.
 ///
-/// Jaro-Winkler similarity of at least 0.8 on lower-case text, or a candidate that contains `name` or is contained in it.
+/// On lower-case text: a Jaro-Winkler similarity of at least 0.8, one slip of the keys (a letter too many, too few, wrong, or two in the wrong
+/// order), or one name inside the other.
 pub fn near<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Vec<String> {
     let name = name.to_lowercase();
     let mut scored: Vec<(f64, &str)> = candidates
@@ -17,8 +18,9 @@ pub fn near<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Ve
 fn similarity(name: &str, candidate: &str) -> f64 {
     let contained =
         name.len() >= 3 && candidate.contains(name) || candidate.len() >= 3 && name.contains(candidate);
+    let slip = name.len() >= 3 && strsim::damerau_levenshtein(name, candidate) == 1;
     let alike = strsim::jaro_winkler(name, candidate);
-    if contained { alike.max(0.9) } else { alike }
+    if contained || slip { alike.max(0.9) } else { alike }
 }
 
 /// "did you mean …?" for the given names, or the empty text.
@@ -41,6 +43,7 @@ mod tests {
         assert_eq!(near("Cube", names), ["cubic"]);
         assert_eq!(near("ellipse", names), ["ellip-obst"]);
         assert!(near("zzz", names).is_empty());
+        assert_eq!(near("rgl", ["rlg", "projection"]), ["rlg"]);
     }
 
     #[test]
