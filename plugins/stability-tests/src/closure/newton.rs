@@ -167,7 +167,7 @@ impl<'a> Search<'a> {
         let norm = w.norm();
         let mut felt = self.body.felt_square(w, AT_REST * norm.sqrt());
         felt.add_identity(PROJECTION);
-        let factor = felt.factor(f64::MIN_POSITIVE);
+        let factor = felt.factor(PROJECTION);
         let mut d = w.scaled(1.0 / norm);
         for _ in 0..2 {
             d = Twist::from_array(factor.solve(d.to_array()));

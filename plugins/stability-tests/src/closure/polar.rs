@@ -140,7 +140,10 @@ impl PolarBody<'_> {
     pub fn separates(&self, d: &Twist) -> bool {
         let bound = 1e-12 * d.norm();
         let back = d.scaled(-1.0);
-        bound > 0.0 && self.grasp.contacts().iter().all(|contact| contact.support(&back) <= bound)
+        // An overflowed twist proves nothing.
+        bound > 0.0
+            && bound.is_finite()
+            && self.grasp.contacts().iter().all(|contact| contact.support(&back) <= bound)
     }
 
     /// The largest support max h_i(-w): w is in Ω where it is at most 1.
@@ -197,4 +200,50 @@ fn normal_wrench(contact: &ScaledContact) -> [f64; 6] {
 fn first_root(q: f64, slope: f64, c: f64) -> f64 {
     let root = (slope * slope - 4.0 * c * q).max(0.0).sqrt();
     if root > slope { 2.0 * q / (root - slope) } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use regrasp_api::{Cone, FingerIndex, Grasp, GraspContact};
+
+    /// Four contacts around a regular tetrahedron: closed, so nothing separates.
+    fn tetrahedron() -> ScaledGrasp {
+        let mut grasp = Grasp::new(Vec3::zeros());
+        for corner in [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]] {
+            let n_O = Vec3::from(corner).normalize();
+            let cone = Cone::Elliptic { mu: 0.5, gamma: 0.0 };
+            grasp.push(GraspContact { finger: FingerIndex(0), p_OC: n_O, n_O, cone });
+        }
+        ScaledGrasp::gather(&grasp, None, "test").unwrap()
+    }
+
+    #[test]
+    fn neither_no_twist_nor_an_overflowed_one_separates() {
+        let grasp = tetrahedron();
+        let body = PolarBody { grasp: &grasp };
+        for size in [0.0, 1.0, 1e160, f64::INFINITY, f64::NAN] {
+            let d = Twist { a: Vec3::new(size, 0.3 * size, -size), b: Vec3::zeros() };
+            assert!(!body.separates(&d), "{size}");
+        }
+    }
+
+    #[test]
+    fn the_best_step_is_stationary_and_stays_inside() {
+        let grasp = tetrahedron();
+        let body = PolarBody { grasp: &grasp };
+        let w = Twist { a: Vec3::new(0.2, -0.1, 0.3), b: Vec3::new(0.1, 0.4, -0.2) };
+        let d = Twist { a: Vec3::new(-1.0, 0.4, 0.3), b: Vec3::new(0.3, 0.1, 0.9) };
+        assert!(body.gauge(&w) < 1.0);
+        let barrier = |t: f64| body.at(&w.plus(t, &d))[..4].iter().map(|local| local.q.ln()).sum::<f64>();
+        let here = body.at(&w);
+        let along = body.along(&here, &d);
+        let slope: f64 = (0..4).map(|i| along[i].q / here[i].q).sum();
+        let sign = slope.signum();
+        let d = d.scaled(sign);
+        let t = body.best_step(&here, &body.along(&here, &d), 0.0).expect("the body is bounded");
+        assert!(t > 0.0 && body.gauge(&w.plus(t, &d)) < 1.0);
+        let best = (1..1000).map(|k| barrier(sign * f64::from(k) * 0.01 * t)).filter(|x| !x.is_nan());
+        assert!(best.fold(f64::NEG_INFINITY, f64::max) <= barrier(sign * t) + 0.05);
+    }
 }

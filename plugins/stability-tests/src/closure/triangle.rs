@@ -8,8 +8,10 @@
 use crate::contacts::{ScaledContact, ScaledGrasp};
 use regrasp_api::Vec3;
 
-/// Conditions that hold, or fail, by less than this are left to the general test.
-const COMFORT: f64 = 1e-5;
+/// Conditions that hold by less than this are left to the general test, which finds a proof for its verdict.
+const COMFORT: f64 = 1e-3;
+/// Conditions that fail by less than this are left to it too.
+const CLEAR: f64 = 1e-6;
 
 /// Whether three point contacts with friction are force closure; `None` near the boundary and for other grasps.
 pub(crate) fn three_points(grasp: &ScaledGrasp) -> Option<bool> {
@@ -54,7 +56,7 @@ fn edges(contact: &ScaledContact, m: &Vec3) -> Option<Section> {
     let square = n_p.norm_squared();
     let excess = square * (1.0 + contact.mu * contact.mu) - 1.0;
     if excess < COMFORT {
-        return (excess < -COMFORT).then_some(Section::Empty);
+        return (excess < -CLEAR).then_some(Section::Empty);
     }
     // Half-angle φ of the section: cos φ = cos θ / |n_p|, so tan φ = sqrt(excess). The conditions' vectors are at φ + 90° to the axis.
     let sin = (excess / (1.0 + excess)).sqrt();
@@ -96,7 +98,7 @@ fn feasible(w: &[Vec3; 6]) -> Option<bool> {
             } else if high <= 0.0 {
                 inside -= ray;
             }
-            clear &= low < -COMFORT && high > COMFORT;
+            clear &= low < -CLEAR && high > CLEAR;
         }
     }
     if clear {

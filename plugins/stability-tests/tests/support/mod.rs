@@ -201,7 +201,7 @@ fn check_internal_force(touches: &[Touch], forces: &[Vec3], torsions: &[f64]) {
 fn check_separating_twist(touches: &[Touch], v: Vec3, w: Vec3) {
     let (center, length) = center_and_length(touches);
     let size = (v.norm_squared() + (w * length).norm_squared()).sqrt();
-    assert!(size > 0.5, "a twist of norm {size}");
+    assert!((0.5..2.0).contains(&size), "a twist of norm {size}");
     for touch in touches {
         let inward = -touch.n;
         let velocity = v + w.cross(&(touch.p - center));
