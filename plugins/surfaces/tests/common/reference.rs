@@ -183,3 +183,73 @@ fn from_facet(mesh: &Mesh, facet: u32, p: &Vec3) -> f64 {
     });
     edges.fold(f64::INFINITY, f64::min)
 }
+
+/// Distances (m) on a graph with many points on every edge (Lanthier, Maheshwari & Sack, "Approximated weighted shortest
+/// paths on polyhedral surfaces", SoCG 1997): never too short, too long by less and less with more points.
+pub struct EdgePoints<'a> {
+    mesh: &'a Mesh,
+    places: Vec<Vec3>,
+    of_facet: Vec<Vec<usize>>,
+}
+
+impl<'a> EdgePoints<'a> {
+    pub fn new(mesh: &'a Mesh, per_edge: usize) -> Self {
+        let mut places = mesh.vertices().to_vec();
+        let mut of_facet: Vec<Vec<usize>> =
+            mesh.facets().iter().map(|corners| corners.iter().map(|&v| v as usize).collect()).collect();
+        for facet in 0..mesh.facets().len() as u32 {
+            let corners = mesh.corners(facet);
+            for (k, neighbor) in mesh.neighbors(facet).iter().enumerate().filter(|(_, n)| n.facet > facet) {
+                for i in 1..=per_edge {
+                    of_facet[facet as usize].push(places.len());
+                    of_facet[neighbor.facet as usize].push(places.len());
+                    places.push(corners[k].lerp(&corners[(k + 1) % 3], i as f64 / (per_edge + 1) as f64));
+                }
+            }
+        }
+        Self { mesh, places, of_facet }
+    }
+
+    /// The distances from a start to every place.
+    pub fn from(&self, start: &Vec3) -> Vec<f64> {
+        let mut facets = vec![Vec::new(); self.places.len()];
+        for (facet, places) in self.of_facet.iter().enumerate() {
+            places.iter().for_each(|&place| facets[place].push(facet));
+        }
+        let mut length = vec![f64::INFINITY; self.places.len()];
+        let mut queue = std::collections::BinaryHeap::new();
+        // Positive numbers have the order of their bits.
+        let key = |length: f64, place: usize| std::cmp::Reverse((length.to_bits(), place));
+        for facet in facets_with(self.mesh, start) {
+            for &place in &self.of_facet[facet as usize] {
+                length[place] = (self.places[place] - start).norm();
+                queue.push(key(length[place], place));
+            }
+        }
+        while let Some(std::cmp::Reverse((bits, place))) = queue.pop() {
+            if f64::from_bits(bits) > length[place] {
+                continue;
+            }
+            for &next in facets[place].iter().flat_map(|&facet| &self.of_facet[facet]) {
+                let through = length[place] + (self.places[next] - self.places[place]).norm();
+                if through < length[next] {
+                    length[next] = through;
+                    queue.push(key(through, next));
+                }
+            }
+        }
+        length
+    }
+
+    /// The distance to a point, given the distances to the places.
+    pub fn to(&self, length: &[f64], start: &Vec3, target: &Vec3) -> f64 {
+        let (starts, ends) = (facets_with(self.mesh, start), facets_with(self.mesh, target));
+        if starts.iter().any(|facet| ends.contains(facet)) {
+            return (start - target).norm();
+        }
+        ends.iter()
+            .flat_map(|&facet| &self.of_facet[facet as usize])
+            .map(|&place| length[place] + (self.places[place] - target).norm())
+            .fold(f64::INFINITY, f64::min)
+    }
+}
