@@ -41,11 +41,6 @@ impl MeshSolid {
         Self { surface, vertices: mesh.vertices().to_vec(), roots: roots(mesh), bounds }
     }
 
-    /// Signed distance of a point (m), negative inside.
-    pub fn signed_distance(&self, p: &Vec3) -> f64 {
-        self.signed_distance_within(p, f64::MAX)
-    }
-
     /// Signed distance of a point (m) that is known to be at most `limit` (m) from the surface, which makes it cheaper.
     pub fn signed_distance_within(&self, p: &Vec3, limit: f64) -> f64 {
         let p = to_glam(p);

@@ -296,7 +296,7 @@ fn bodies_wholly_inside_a_mesh_have_distance_zero() {
     }
     let Solid::Mesh(mesh) = &large else { unreachable!() };
     assert!(!mesh.clear_of_rod(&Rod::new(inside.translation.vector, Vec3::zeros(), 0.01), 1e-3));
-    assert!((mesh.signed_distance(&Vec3::new(0.9, 0.2, 0.3)) + 0.1).abs() < 1e-12);
+    assert!((mesh.signed_distance_within(&Vec3::new(0.9, 0.2, 0.3), 1.0) + 0.1).abs() < 1e-12);
 }
 
 #[test]
