@@ -3,8 +3,8 @@
 use crate::common::{Halving, bisection, refuse, with_spare, wrong_target};
 use regrasp_api::{
     Build, CallError, Configuration, Context, Entry, FingerIndex, Hint, LocalPlanner, MAX_FINGERS, Path,
-    Reached, Reason, Settings, SettingsError, Slot, SurfacePath, Target, Task, angle_between, check_range,
-    check_settings, interpolate,
+    Pose, Reached, Reason, Settings, SettingsError, Slot, SurfacePath, Target, Task, TipRule, angle_between,
+    check_range, check_settings, interpolate,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -106,8 +106,9 @@ impl Linear {
         if from.holding() != to.holding() {
             return Ok(Some(Reason::Closure));
         }
-        let Some(count) = steps(task, from, to, &mut scratch.slides, context)? else {
-            return Ok(Some(Reason::Surface));
+        let count = match steps(task, from, to, &mut scratch.slides, context)? {
+            Ok(count) => count,
+            Err(reason) => return Ok(Some(reason)),
         };
         scratch.states.clear();
         scratch.states.extend([from.clone(), to.clone()]);
@@ -141,28 +142,58 @@ impl Linear {
     }
 }
 
-/// Lays the geodesics and counts the steps, at least 1; `None` where a fingertip cannot follow the surface.
+/// Where one finger alone is looked at before the next one's geodesic is laid.
+const GLANCES: [f64; 3] = [0.5, 0.25, 0.75];
+
+/// Lays the geodesics and counts the steps, at least 1; or says what is in the way of some finger.
+///
+/// A geodesic costs as much as dozens of single fingers, and most paths fail: each finger is looked at before the next one's
+/// geodesic is laid.
 fn steps(
     task: &Task<'_>,
     from: &Configuration,
     to: &Configuration,
     slides: &mut [SurfacePath; MAX_FINGERS],
     context: &mut Context<'_>,
-) -> Result<Option<usize>, CallError> {
+) -> Result<Result<usize, Reason>, CallError> {
     let resolution = task.resolution;
     let distance = (to.X_HO.translation.vector - from.X_HO.translation.vector).norm();
     let angle = angle_between(&from.X_HO.rotation, &to.X_HO.rotation);
     let mut steps = (distance / resolution.grasp_step).max(angle / resolution.grasp_turn);
+    let poses = GLANCES.map(|s| interpolate(&from.X_HO, &to.X_HO, s));
+    if poses.iter().any(|X_HO| task.clearance.object_free(X_HO).is_err()) {
+        return Ok(Err(Reason::Collision));
+    }
     for (finger, contact) in from.contacts.iter() {
         if let (Some(a), Some(b)) = (contact, &to.contacts[finger]) {
             let slide = &mut slides[finger.index()];
             if !task.surface.geodesic(a, b, slide, context)? {
-                return Ok(None);
+                return Ok(Err(Reason::Surface));
+            }
+            for (s, X_HO) in GLANCES.into_iter().zip(&poses) {
+                if let Some(reason) = glance(task, (from, to), finger, slide, (s, X_HO)) {
+                    return Ok(Err(reason));
+                }
             }
             steps = steps.max(slide.lift_length() / resolution.grasp_step);
         }
     }
-    Ok(Some((steps.ceil() as usize).max(1)))
+    Ok(Ok((steps.ceil() as usize).max(1)))
+}
+
+/// What is in the way of one finger alone, a fraction `s` of the way along its slide, with the object at `X_HO`.
+fn glance(
+    task: &Task<'_>,
+    (from, to): (&Configuration, &Configuration),
+    finger: FingerIndex,
+    slide: &SurfacePath,
+    (s, X_HO): (f64, &Pose),
+) -> Option<Reason> {
+    let center = slide.at(s).tip_center(task.hand.fingertip_radius());
+    let p_HF = X_HO.rotation * center + X_HO.translation.vector;
+    let near = from.joints[finger].interpolate(&to.joints[finger], s);
+    let Some(joints) = task.hand.inverse(finger, &p_HF, &near) else { return Some(Reason::Reach) };
+    task.clearance.finger_free(finger, &joints, X_HO, TipRule::Touches).err().map(|_| Reason::Collision)
 }
 
 /// The closed configuration at one step, with the joints near those of its neighbours.

@@ -80,8 +80,63 @@ fn random_paths_are_closed_and_stable_at_every_state() {
                     None => assert_slides(&bench, &from, &to, &path),
                 }
             }
-            println!("{name} {}: {refused:?}", bench.hand.description().name);
-            assert!(refused.len() < 12, "{refused:?}");
+            assert!(refused.len() < 12, "{name} {}: {refused:?}", bench.hand.description().name);
         }
     }
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_its_reason() {
+    let bench = support::Bench::new(support::four_finger(), support::sphere());
+    let from = support::grasp(&bench, &mut Random::from_key(1, 2, 3, 4));
+    let mut other = from.clone();
+    other.contacts[FingerIndex(2)] = None;
+    assert_eq!(join(&bench, &from, &other, None).stop, Some(Reason::Closure));
+    let linear = Linear::new(LinearSettings::default()).unwrap();
+    let answer = linear.connect(&bench.task(), &from, &Target::Transfer(&from.X_HO), None, &mut context(1));
+    assert!(matches!(answer, Err(CallError::Unsupported { .. })), "{answer:?}");
+    let message = Linear::new(LinearSettings { joint_jump: 0.0 }).unwrap_err().to_string();
+    assert!(message.contains("`joint_jump` = 0"), "{message}");
+}
+
+#[test]
+fn free_fingers_move_straight() {
+    let bench = support::Bench::new(support::four_finger(), support::sphere());
+    let mut random = Random::from_key(6, 2, 3, 4);
+    let moving = FingerIndex(3);
+    let (from, to, path) = (0..200)
+        .find_map(|_| {
+            let mut from = support::grasp(&bench, &mut random);
+            (from.contacts[moving], from.joints[moving]) = (None, bench.hand.finger(moving).rest);
+            let mut to = from.clone();
+            to.X_HO.translation.vector.z += 0.004;
+            for finger in from.holding().iter() {
+                let p_OF = from.contacts[finger].unwrap().tip_center(bench.radius());
+                to.joints[finger] =
+                    bench.hand.inverse(finger, &geometry::to_hand(&to.X_HO, &p_OF), &from.joints[finger])?;
+            }
+            to.joints[moving][0] += 0.1;
+            let mut path = Path::default();
+            join(&bench, &from, &to, Some(&mut path)).is_complete().then_some((from, to, path))
+        })
+        .unwrap();
+    assert_slides(&bench, &from, &to, &path);
+    let last = (path.states.len() - 1) as f64;
+    for (i, q) in path.states.iter().enumerate() {
+        let straight = from.joints[moving].interpolate(&to.joints[moving], i as f64 / last);
+        assert!(q.joints[moving].max_difference(&straight) < 1e-12);
+    }
+}
+
+#[test]
+fn the_plugins_are_registered_for_their_slots() {
+    let slot = |id: &str| {
+        let entry = regrasp_api::inventory::iter::<Entry>().find(|entry| entry.id == id).unwrap();
+        assert!((entry.check)("").is_ok() && (entry.check)("{\"no-such-key\": 1}").is_err());
+        assert_eq!(entry.role(), Role::LocalPlanner);
+        entry.slots.to_vec()
+    };
+    assert_eq!(slot("local-planner/linear"), [Slot::GraspPlanner]);
+    assert_eq!(slot("local-planner/rolling"), [Slot::TransferPlanner]);
+    assert_eq!(slot("local-planner/rrt"), [Slot::RegraspPlanner]);
 }

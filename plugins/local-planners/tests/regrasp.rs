@@ -80,17 +80,17 @@ fn random_regrasps_touch_at_their_ends_only() {
         ("ring", support::ring()),
     ] {
         for hand in [support::four_finger(), support::free_tips()] {
-            let bench = support::Bench::new(hand, object.clone());
-            let (mut random, mut complete, mut refused) = (Random::from_key(2, 7, 1, 8), 0, Vec::new());
-            for _ in 0..12 {
+            let mut bench = support::Bench::new(hand, object.clone());
+            bench.stability = Box::new(support::Glue);
+            let (mut random, mut complete) = (Random::from_key(2, 7, 1, 8), 0);
+            for _ in 0..8 {
                 let from = support::grasp(&bench, &mut random);
                 let Some((contact, joints)) = elsewhere(&bench, &from, &mut random) else { continue };
                 let mut path = Path::default();
                 let reached = regrasp(&bench, &from, Some(&contact), &joints, Some(&mut path));
                 assert_eq!(regrasp(&bench, &from, Some(&contact), &joints, None), reached);
-                if let Some(reason) = reached.stop {
+                if !reached.is_complete() {
                     assert_eq!((&reached.end, reached.fraction, path.states.len()), (&from, 0.0, 1));
-                    refused.push(reason);
                     continue;
                 }
                 complete += 1;
@@ -100,7 +100,119 @@ fn random_regrasps_touch_at_their_ends_only() {
                 );
                 assert_flies(&bench, &from, &path, &reached.end);
             }
-            println!("{name} {}: {complete} {refused:?}", bench.hand.description().name);
+            assert!(complete > 0, "{name} {}", bench.hand.description().name);
         }
     }
+}
+
+/// Four free tips around a ball at the origin, held by glue.
+fn around_a_ball(obstacles: &str) -> (support::Bench, Configuration) {
+    #[derive(serde::Deserialize)]
+    struct Obstacles {
+        #[serde(default)]
+        obstacle: Vec<ObstacleDescription>,
+    }
+    let obstacles: Obstacles = toml::from_str(obstacles).unwrap();
+    let mut bench = support::Bench::among(support::free_tips(), support::sphere(), &obstacles.obstacle);
+    bench.stability = Box::new(support::Glue);
+    let axes = [Vec3::x(), Vec3::y(), -Vec3::x(), -Vec3::y()];
+    let q = support::touching_along(&bench, &Pose::identity(), &axes);
+    (bench, q)
+}
+
+/// Contact and joints of the moving finger above the object along a direction.
+fn touch(bench: &support::Bench, direction: Vec3) -> (Contact, FingerJoints) {
+    let contact = bench.surface.project(&(direction * 0.1), None).contact;
+    let near = FingerJoints::zeros(3);
+    (contact, bench.hand.inverse(FINGER, &contact.tip_center(bench.radius()), &near).unwrap())
+}
+
+#[test]
+fn a_finger_leaves_rests_and_comes_back() {
+    let (bench, from) = around_a_ball("");
+    let free = FingerJoints::from_slice(&[0.0, 0.08, 0.06]);
+    let (contact, joints) = touch(&bench, Vec3::new(0.0, 0.8, 0.6));
+    let mut path = Path::default();
+    let away = regrasp(&bench, &from, None, &free, Some(&mut path));
+    assert!(away.is_complete());
+    assert_flies(&bench, &from, &path, &away.end);
+    let other = FingerJoints::from_slice(&[0.0, 0.05, 0.1]);
+    let aside = regrasp(&bench, &away.end, None, &other, Some(&mut path));
+    assert!(aside.is_complete());
+    assert_flies(&bench, &away.end, &path, &aside.end);
+    let back = regrasp(&bench, &aside.end, Some(&contact), &joints, Some(&mut path));
+    assert!(back.is_complete());
+    assert_flies(&bench, &aside.end, &path, &back.end);
+    assert_eq!(back.end.holding(), from.holding());
+}
+
+#[test]
+fn on_a_sphere_the_fingertip_flies_its_arc_at_lift_height() {
+    let (bench, from) = around_a_ball("");
+    let (contact, joints) = touch(&bench, Vec3::z());
+    let mut path = Path::default();
+    assert!(regrasp(&bench, &from, Some(&contact), &joints, Some(&mut path)).is_complete());
+    let tips: Vec<_> = path.states.iter().map(|q| bench.hand.tip_center(FINGER, &q.joints[FINGER])).collect();
+    let length: f64 = tips.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    // Up and down 8.08 mm, a quarter of a circle of radius 48.08 mm.
+    let expected = 0.01616 + std::f64::consts::FRAC_PI_2 * 0.04808;
+    // Facet normals lean to the side of the way now and then: at this height that adds a few per cent.
+    assert!((0.99..1.08).contains(&(length / expected)), "{length} {expected}");
+}
+
+#[test]
+fn random_trees_find_the_way_past_an_obstacle() {
+    let bar = "[[obstacle]]\nshape = { kind = \"capsule\", from = [-0.02, 0.034, 0.034], to = [0.02, 0.034, 0.034], radius = 0.006 }";
+    let (bench, from) = around_a_ball(bar);
+    let (contact, joints) = touch(&bench, Vec3::z());
+    let target = Target::Regrasp { finger: FINGER, contact: Some(&contact), joints: &joints };
+    let go = |nodes, path: &mut Path| {
+        let rrt = Rrt::new(RrtSettings { nodes, ..RrtSettings::default() }, &*bench.hand).unwrap();
+        rrt.connect(&bench.task(), &from, &target, Some(path), &mut context(3)).unwrap()
+    };
+    let (mut path, mut again) = (Path::default(), Path::default());
+    assert_eq!(go(0, &mut path).stop, Some(Reason::Collision));
+    let reached = go(500, &mut path);
+    assert!(reached.is_complete(), "{:?}", reached.stop);
+    assert_flies(&bench, &from, &path, &reached.end);
+    for q in &path.states[1..path.states.len() - 1] {
+        let clear = bench.clearance.finger_free(FINGER, &q.joints[FINGER], &q.X_HO, TipRule::Touches);
+        assert_eq!(clear, Ok(()));
+    }
+    go(500, &mut again);
+    assert_eq!(path, again, "the same random stream must give the same path");
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_its_reason() {
+    let (mut bench, from) = around_a_ball("");
+    let (contact, joints) = touch(&bench, Vec3::z());
+    let stop = |bench: &support::Bench, joints: &FingerJoints| {
+        regrasp(bench, &from, Some(&contact), joints, None).stop
+    };
+    let off = FingerJoints::from_slice(&[joints[0] + 1e-4, joints[1], joints[2]]);
+    assert_eq!(stop(&bench, &off), Some(Reason::Closure));
+    let beyond = FingerJoints::from_slice(&[joints[0], joints[1], 0.16]);
+    assert_eq!(stop(&bench, &beyond), Some(Reason::Limits));
+    // On another finger's tip.
+    let taken = from.contacts[FingerIndex(0)].unwrap();
+    let there = from.joints[FingerIndex(0)];
+    assert_eq!(regrasp(&bench, &from, Some(&taken), &there, None).stop, Some(Reason::Collision));
+    // Nothing holds without friction.
+    bench.object.friction = 0.0;
+    bench.stability = Box::new(
+        regrasp_stability_tests::ForceClosure::new(regrasp_stability_tests::ForceClosureSettings::default())
+            .unwrap(),
+    );
+    assert_eq!(stop(&bench, &joints), Some(Reason::Stability));
+}
+
+#[test]
+fn other_targets_and_bad_settings_are_refused() {
+    let (bench, from) = around_a_ball("");
+    let rrt = Rrt::new(RrtSettings::default(), &*bench.hand).unwrap();
+    let answer = rrt.connect(&bench.task(), &from, &Target::Transfer(&from.X_HO), None, &mut context(1));
+    assert!(matches!(answer, Err(CallError::Unsupported { .. })), "{answer:?}");
+    let settings = RrtSettings { extend: f64::NAN, ..RrtSettings::default() };
+    assert!(Rrt::new(settings, &*bench.hand).unwrap_err().to_string().contains("extend"));
 }

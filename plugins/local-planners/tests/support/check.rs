@@ -13,6 +13,8 @@ pub struct Transfer {
     pub closure: f64,
     /// Net slip (m) from the start to any instant.
     pub slip: f64,
+    /// Net slip (m) from the start to any state.
+    pub slip_at_states: f64,
     /// Angle (rad) between a state's normal and the true one.
     pub normal: f64,
     /// Largest motion (m) of a fingertip's centre over the object between two states.
@@ -75,6 +77,7 @@ pub fn transfer(bench: &Bench, path: &Path) -> Transfer {
                 worst.rolled[finger.index()] += (now.p_OC - before.p_OC).norm();
                 before = now;
             }
+            worst.slip_at_states = worst.slip_at_states.max(net.norm());
             let contact = pair[1].contacts[finger].unwrap();
             let sin = contact.n_O.cross(&before.n_O).norm();
             worst.normal = worst.normal.max(sin);
