@@ -10,6 +10,7 @@ use crate::contact_checks::Touch;
 use crate::hand::Chains;
 use crate::scene::Scene;
 use crate::shape::{self, Core};
+use crate::solid::Gap;
 use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use nalgebra::Point3;
@@ -20,8 +21,6 @@ use regrasp_plan::{Extreme, Place};
 const HALVINGS: u32 = 7;
 /// The same over the whole plan.
 const MOST_HALVINGS: usize = 100_000;
-/// Meshes with more vertices than this are not searched for separating planes: the tree is faster.
-const MOST_SUPPORT_VERTICES: usize = 3000;
 
 /// The distances of all pairs.
 pub(crate) struct ClearanceCheck<'s> {
@@ -32,8 +31,8 @@ pub(crate) struct ClearanceCheck<'s> {
     smallest: f64,
     /// For each pair a lower bound of its distance at the last state (m); minus infinity where nothing is known.
     lower: Vec<f64>,
-    /// For each pair the direction from the object to the other body at their last exact distance, in O; zero where nothing is known.
-    directions: Vec<Vec3>,
+    /// For each pair of object and segment where they were closest at their last exact distance, in O.
+    nearest: Vec<Gap>,
     /// Room for halved steps.
     spare: Frames,
     /// How many more halvings there may be: a plan that needs as many is no plan of ours.
@@ -52,6 +51,7 @@ struct Step<'l, 'p> {
 
 impl<'s> ClearanceCheck<'s> {
     pub(crate) fn new(hand: &'s Chains, scene: &'s Scene, demanded: f64) -> Self {
+        let nowhere = Gap { distance: 0.0, direction: Vec3::zeros(), facet: 0 };
         Self {
             hand,
             scene,
@@ -59,7 +59,7 @@ impl<'s> ClearanceCheck<'s> {
             demanded,
             smallest: f64::INFINITY,
             lower: vec![f64::NEG_INFINITY; scene.pairs.len()],
-            directions: vec![Vec3::zeros(); scene.pairs.len()],
+            nearest: vec![nowhere; scene.pairs.len()],
             spare: Frames::new(hand),
             halvings_left: MOST_HALVINGS,
         }
@@ -132,7 +132,7 @@ impl<'s> ClearanceCheck<'s> {
         }
         let place = |fraction: f64| step.leg.between(step.state, fraction);
         let end = sample as f64 / SAMPLES as f64;
-        let mut after = self.bound(pair, &frames[sample], touches);
+        let mut after = self.bound(pair, &frames[sample], touches, floor);
         if after <= floor {
             after = self.exact(pair, &frames[sample], false);
             self.take(pair, after, || place(end));
@@ -193,9 +193,9 @@ impl<'s> ClearanceCheck<'s> {
             (Core::Mesh(solid), Core::Segment(p, q)) => {
                 let X_AB = X_HA.inv_mul(X_HB);
                 let [p, q] = [p, q].map(|end| (X_AB * Point3::from(*end)).coords);
-                let (distance, direction) = shape::from_segment(solid, &p, &q, contained);
-                self.directions[pair] = direction;
-                distance
+                let gap = solid.from_segment(&p, &q, self.nearest[pair].facet);
+                self.nearest[pair] = gap;
+                if contained && solid.contains(&p) { 0.0 } else { gap.distance }
             }
             _ => shape::distance(&first.core, X_HA, &second.core, X_HB, contained),
         };
@@ -213,7 +213,8 @@ impl<'s> ClearanceCheck<'s> {
     }
 
     /// A cheap lower bound of a pair's distance (m): balls around both, or a plane between object and segment.
-    fn bound(&self, pair: usize, frames: &Frames, touches: &[Option<Touch>; MAX_FINGERS]) -> f64 {
+    /// Stops at the first above `floor`.
+    fn bound(&self, pair: usize, frames: &Frames, touches: &[Option<Touch>; MAX_FINGERS], floor: f64) -> f64 {
         let (a, b) = self.scene.pairs[pair];
         let (first, second) = (&self.scene.bodies[a], &self.scene.bodies[b]);
         let (X_HA, X_HB) = (self.scene.pose(a, frames), self.scene.pose(b, frames));
@@ -227,10 +228,11 @@ impl<'s> ClearanceCheck<'s> {
                 Body::Link(finger, _) => touches[finger.index()].map(|touch| touch.n_O),
                 _ => None,
             };
-            if solid.vertices.len() <= MOST_SUPPORT_VERTICES {
-                for n in [Some(self.directions[pair]), touch].into_iter().flatten() {
-                    let plane = ends[0].dot(&n).min(ends[1].dot(&n)) - solid.support(&n) - second.radius;
-                    bound = bound.max(plane);
+            for n in [touch, Some(self.nearest[pair].direction)].into_iter().flatten() {
+                let plane = ends[0].dot(&n).min(ends[1].dot(&n)) - solid.support(&n) - second.radius;
+                bound = bound.max(plane);
+                if bound > floor {
+                    break;
                 }
             }
         }

@@ -13,6 +13,7 @@ mod lift;
 mod motion_checks;
 mod scene;
 mod shape;
+mod solid;
 mod stability;
 mod track;
 mod verdict;

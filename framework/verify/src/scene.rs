@@ -1,7 +1,8 @@
 //! All bodies of the scene and the pairs of them that may not touch.
 
 use crate::hand::Chains;
-use crate::shape::{Core, Solid, distance};
+use crate::shape::{Core, distance};
+use crate::solid::Solid;
 use crate::track::{Frames, Leg};
 use regrasp_api::{
     Body, FingerIndex, HandDescription, MAX_FINGER_JOINTS, ObjectModel, PlacedShape, Pose, Problem, Vec3,

@@ -1,10 +1,11 @@
 //! Solids as a core and a radius around it, and their exact distances by parry. The border between nalgebra and glam.
 
+use crate::solid::Solid;
 use nalgebra::Point3;
 use parry3d_f64::math::{Pose as ParryPose, Rot3, Vector};
 use parry3d_f64::query::details::distance_segment_segment;
-use parry3d_f64::query::{self, ClosestPoints, PointQuery, PointQueryWithLocation};
-use parry3d_f64::shape::{Cuboid, Segment, Shape as ParryShape, TriMesh, TriMeshFlags};
+use parry3d_f64::query::{self, PointQuery};
+use parry3d_f64::shape::{Cuboid, Segment, Shape as ParryShape};
 use regrasp_api::{Mesh, PlacedShape, Pose, Shape, Vec3};
 use std::path::Path;
 use std::sync::Arc;
@@ -17,52 +18,6 @@ pub(crate) enum Core {
     Cuboid { X: Pose, half: Vec3 },
     Mesh(Arc<Solid>),
     HalfSpace { n: Vec3, offset: f64 },
-}
-
-/// A closed mesh with its tree.
-#[derive(Debug)]
-pub(crate) struct Solid {
-    pub(crate) vertices: Vec<Vec3>,
-    mesh: TriMesh,
-}
-
-/// The closest point of a solid's surface.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Closest {
-    pub(crate) point: Vec3,
-    pub(crate) inside: bool,
-    pub(crate) facet: u32,
-}
-
-impl Solid {
-    pub(crate) fn new(mesh: &Mesh) -> Result<Self, String> {
-        let vertices = mesh.vertices().iter().map(vector).collect();
-        let flags = TriMeshFlags::ORIENTED;
-        let tree = TriMesh::with_flags(vertices, mesh.facets().to_vec(), flags).map_err(|e| e.to_string())?;
-        Ok(Self { vertices: mesh.vertices().to_vec(), mesh: tree })
-    }
-
-    /// The closest point of the surface. `near` is a facet that is likely to hold it; it changes the cost alone.
-    pub(crate) fn closest(&self, p: &Vec3, near: u32) -> Closest {
-        let p = vector(p);
-        let facet = near.min(self.mesh.num_triangles() as u32 - 1);
-        let bound = self.mesh.triangle(facet).project_local_point(p, false).point;
-        // The facet's own distance must stay within the bound, rounding included.
-        let bound = (bound - p).length() * (1.0 + 1e-9) + 1e-12;
-        let found = self.mesh.project_local_point_and_get_location_with_max_dist(p, false, bound);
-        let (projection, (facet, _)) =
-            found.unwrap_or_else(|| self.mesh.project_local_point_and_get_location(p, false));
-        Closest { point: from_vector(projection.point), inside: projection.is_inside, facet }
-    }
-
-    /// The largest of `a · v` over the vertices.
-    pub(crate) fn support(&self, a: &Vec3) -> f64 {
-        self.vertices.iter().map(|v| a.dot(v)).fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    fn contains(&self, p: &Vec3) -> bool {
-        self.closest(p, 0).inside
-    }
 }
 
 impl Core {
@@ -180,7 +135,10 @@ pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: 
             let local = |p: &Vec3| X.inverse_transform_point(&Point3::from(moved(p))).coords;
             apart(&segment(&local(p), &local(q)), &ParryPose::IDENTITY, &cuboid(half))
         }
-        (Core::Segment(p, q), Core::Mesh(solid)) => from_segment(solid, &moved(p), &moved(q), contained).0,
+        (Core::Segment(p, q), Core::Mesh(solid)) => {
+            let (p, q) = (moved(p), moved(q));
+            if contained && solid.contains(&p) { 0.0 } else { solid.from_segment(&p, &q, 0).distance }
+        }
         (Core::Cuboid { X, half }, Core::Cuboid { X: X_other, half: other }) => {
             let X = (X_BA * X).inv_mul(X_other);
             apart(&cuboid(half), &parry_pose(&X), &cuboid(other))
@@ -194,32 +152,16 @@ pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: 
             if contained && (inside(&solid.vertices[0]) || solid.contains(&X.translation.vector)) {
                 return 0.0;
             }
-            apart(&cuboid(half), &parry_pose(&X.inverse()), &solid.mesh)
+            apart(&cuboid(half), &parry_pose(&X.inverse()), solid.surface())
         }
         (Core::Mesh(first), Core::Mesh(second)) => {
             let back = X_BA.inverse() * Point3::from(second.vertices[0]);
             if contained && (second.contains(&moved(&first.vertices[0])) || first.contains(&back.coords)) {
                 return 0.0;
             }
-            apart(&first.mesh, &parry_pose(&X_BA.inverse()), &second.mesh)
+            apart(first.surface(), &parry_pose(&X_BA.inverse()), second.surface())
         }
         _ => unreachable!("the cores are in the order of their ranks"),
-    }
-}
-
-/// The distance (m) of a segment from a solid in the solid's frame, and the unit direction from the solid to the segment there; both zero
-/// where they overlap.
-pub(crate) fn from_segment(solid: &Solid, p: &Vec3, q: &Vec3, contained: bool) -> (f64, Vec3) {
-    if contained && solid.contains(p) {
-        return (0.0, Vec3::zeros());
-    }
-    let identity = ParryPose::IDENTITY;
-    match query::closest_points(&identity, &solid.mesh, &identity, &segment(p, q), f64::MAX) {
-        Ok(ClosestPoints::WithinMargin(on_solid, on_segment)) => {
-            let away = from_vector(on_segment - on_solid);
-            (away.norm(), away.try_normalize(0.0).unwrap_or_else(Vec3::zeros))
-        }
-        _ => (0.0, Vec3::zeros()),
     }
 }
 
@@ -246,7 +188,7 @@ fn apart(first: &dyn ParryShape, X: &ParryPose, second: &dyn ParryShape) -> f64 
     query::distance(&ParryPose::IDENTITY, first, X, second).map_or(0.0, |answer| answer.distance)
 }
 
-fn segment(a: &Vec3, b: &Vec3) -> Segment {
+pub(crate) fn segment(a: &Vec3, b: &Vec3) -> Segment {
     Segment::new(vector(a), vector(b))
 }
 
@@ -254,12 +196,8 @@ fn cuboid(half: &Vec3) -> Cuboid {
     Cuboid::new(vector(half))
 }
 
-fn vector(v: &Vec3) -> Vector {
+pub(crate) fn vector(v: &Vec3) -> Vector {
     Vector::new(v.x, v.y, v.z)
-}
-
-fn from_vector(v: Vector) -> Vec3 {
-    Vec3::new(v.x, v.y, v.z)
 }
 
 fn parry_pose(X: &Pose) -> ParryPose {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::solid::Gap;
 use regrasp_api::{PoseDescription, Primitive, Random};
 
 fn torus() -> Core {
@@ -101,9 +102,17 @@ fn closest_points_do_not_depend_on_where_the_search_begins() {
 fn supports_give_separating_planes() {
     let Core::Mesh(solid) = torus() else { panic!() };
     let (a, b) = (Vec3::new(0.1, 0.02, 0.0), Vec3::new(0.1, -0.03, 0.01));
-    let (distance, n) = from_segment(&solid, &a, &b, true);
+    let Gap { distance, direction: n, .. } = solid.from_segment(&a, &b, 3);
     let plane = n.dot(&a).min(n.dot(&b)) - solid.support(&n);
     assert!(distance > 0.02 && plane <= distance + 1e-12 && plane > distance - 1e-3, "{plane} {distance}");
+    let fine = Primitive::Ellipsoid { semi_axes: Vec3::new(0.1, 0.2, 0.3) };
+    let fine = Solid::new(&regrasp_world::primitive_mesh(&fine, 5120).unwrap()).unwrap();
+    let mut random = Random::from_key(8, 0, 0, 0);
+    for _ in 0..50 {
+        let n = random.direction();
+        let brute = fine.vertices.iter().map(|v| v.dot(&n)).fold(0.0, f64::max);
+        assert!((fine.support(&n) - brute).abs() < 1e-15, "the tree finds the outermost vertex too");
+    }
 }
 
 #[test]

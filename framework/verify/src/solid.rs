@@ -1,0 +1,146 @@
+//! A closed mesh with its tree: closest points, distances of segments, supporting planes, all exact.
+
+use crate::shape::{segment, vector};
+use parry3d_f64::math::{Pose as ParryPose, Vector};
+use parry3d_f64::partitioning::BvhNode;
+use parry3d_f64::query::details::closest_points_segment_segment;
+use parry3d_f64::query::{ClosestPoints, PointQuery, PointQueryWithLocation};
+use parry3d_f64::shape::{Segment, TriMesh, TriMeshFlags, Triangle};
+use regrasp_api::{Mesh, Vec3};
+
+/// With more vertices than this, the tree finds the outermost one faster than going through all.
+const FEW_VERTICES: usize = 1000;
+
+/// A closed mesh with its tree.
+#[derive(Debug)]
+pub(crate) struct Solid {
+    pub(crate) vertices: Vec<Vec3>,
+    mesh: TriMesh,
+}
+
+/// The closest point of a solid's surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Closest {
+    pub(crate) point: Vec3,
+    pub(crate) inside: bool,
+    pub(crate) facet: u32,
+}
+
+/// Where a segment comes closest to a solid's surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gap {
+    /// The distance (m).
+    pub(crate) distance: f64,
+    /// The unit direction from the surface to the segment; zero where they meet.
+    pub(crate) direction: Vec3,
+    pub(crate) facet: u32,
+}
+
+impl Solid {
+    pub(crate) fn new(mesh: &Mesh) -> Result<Self, String> {
+        let vertices = mesh.vertices().iter().map(vector).collect();
+        let flags = TriMeshFlags::ORIENTED;
+        let tree = TriMesh::with_flags(vertices, mesh.facets().to_vec(), flags).map_err(|e| e.to_string())?;
+        Ok(Self { vertices: mesh.vertices().to_vec(), mesh: tree })
+    }
+
+    pub(crate) fn surface(&self) -> &TriMesh {
+        &self.mesh
+    }
+
+    fn triangle(&self, facet: u32) -> Triangle {
+        self.mesh.triangle(facet.min(self.mesh.num_triangles() as u32 - 1))
+    }
+
+    /// The closest point of the surface. `near` is a facet that is likely to hold it; it changes the cost alone.
+    pub(crate) fn closest(&self, p: &Vec3, near: u32) -> Closest {
+        let p = vector(p);
+        let bound = self.triangle(near).project_local_point(p, false).point;
+        // The facet's own distance must stay within the bound, rounding included.
+        let bound = (bound - p).length() * (1.0 + 1e-9) + 1e-12;
+        let found = self.mesh.project_local_point_and_get_location_with_max_dist(p, false, bound);
+        let (projection, (facet, _)) =
+            found.unwrap_or_else(|| self.mesh.project_local_point_and_get_location(p, false));
+        Closest { point: from_vector(projection.point), inside: projection.is_inside, facet }
+    }
+
+    pub(crate) fn contains(&self, p: &Vec3) -> bool {
+        self.closest(p, 0).inside
+    }
+
+    /// Where a segment comes closest to the surface; `near` as for [`Self::closest`].
+    pub(crate) fn from_segment(&self, p: &Vec3, q: &Vec3, near: u32) -> Gap {
+        let line = segment(p, q);
+        let first = between(&self.triangle(near), &line);
+        let (low, high) = (line.a.min(line.b), line.a.max(line.b));
+        let bound = |node: &BvhNode, _: f64| {
+            let half = (node.maxs() - node.mins()) * 0.5;
+            // A ball around the node against the segment, and both boxes: long boxes suit the second, slanted segments the first.
+            let ball = line.distance_to_local_point(node.center(), true) - half.length();
+            let boxes = (node.mins() - high).max(low - node.maxs()).max(Vector::ZERO).length();
+            ball.max(boxes)
+        };
+        let leaf = |facet: u32, _: f64| Some(between(&self.mesh.triangle(facet), &line));
+        match self.mesh.bvh().find_best(first.0, bound, leaf) {
+            Some((facet, (distance, away))) => Gap::new(distance, away, facet),
+            None => Gap::new(first.0, first.1, near),
+        }
+    }
+
+    /// The largest of `n · v` over the vertices.
+    pub(crate) fn support(&self, n: &Vec3) -> f64 {
+        if self.vertices.len() <= FEW_VERTICES {
+            return self.vertices.iter().map(|v| n.dot(v)).fold(f64::NEG_INFINITY, f64::max);
+        }
+        let n = vector(n);
+        let bound = |node: &BvhNode, _: f64| {
+            let half = (node.maxs() - node.mins()) * 0.5;
+            -(n.dot(node.center()) + n.abs().dot(half))
+        };
+        let leaf = |facet: u32, _: f64| {
+            let Triangle { a, b, c } = self.mesh.triangle(facet);
+            Some(-n.dot(a).max(n.dot(b)).max(n.dot(c)))
+        };
+        self.mesh.bvh().find_best(f64::MAX, bound, leaf).map_or(f64::INFINITY, |(_, lowest)| -lowest)
+    }
+}
+
+impl Gap {
+    fn new(distance: f64, away: Vector, facet: u32) -> Self {
+        let direction = from_vector(away).try_normalize(0.0).unwrap_or_else(Vec3::zeros);
+        Self { distance, direction, facet }
+    }
+}
+
+/// The distance of a triangle and a segment, with the vector from one to the other there.
+///
+/// If the segment does not pass through the triangle, one of the closest two points is an end of the segment or lies on an edge of the triangle.
+fn between(triangle: &Triangle, line: &Segment) -> (f64, Vector) {
+    if pierces(triangle, line) {
+        return (0.0, Vector::ZERO);
+    }
+    let ends = [line.a, line.b].map(|end| end - triangle.project_local_point(end, false).point);
+    let edges = triangle.edges().map(|edge| {
+        match closest_points_segment_segment(&ParryPose::IDENTITY, &edge, line, f64::MAX) {
+            ClosestPoints::WithinMargin(on_edge, on_line) => on_line - on_edge,
+            _ => Vector::ZERO,
+        }
+    });
+    let all = ends.into_iter().chain(edges).map(|away| (away.length(), away));
+    all.fold((f64::INFINITY, Vector::ZERO), |least, one| if one.0 < least.0 { one } else { least })
+}
+
+fn pierces(triangle: &Triangle, line: &Segment) -> bool {
+    let Triangle { a, b, c } = *triangle;
+    let n = (b - a).cross(c - a);
+    let (from, to) = (n.dot(line.a - a), n.dot(line.b - a));
+    if from * to > 0.0 || from == to {
+        return false;
+    }
+    let x = line.a + (line.b - line.a) * (from / (from - to));
+    [(a, b), (b, c), (c, a)].iter().all(|(u, v)| (*v - *u).cross(x - *u).dot(n) >= 0.0)
+}
+
+fn from_vector(v: Vector) -> Vec3 {
+    Vec3::new(v.x, v.y, v.z)
+}
