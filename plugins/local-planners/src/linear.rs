@@ -120,15 +120,13 @@ impl Linear {
             if checked % 16 == 0 {
                 context.proceed()?;
             }
-            let state = match between(task, scratch, halving, count) {
-                Ok(state) => state,
-                Err(reason) => return Ok(Some(reason)),
-            };
-            if let Some(reason) = fault(task, &state, &mut hint, context)? {
+            if let Err(reason) = push_between(task, scratch, halving, count) {
                 return Ok(Some(reason));
             }
-            scratch.places[halving.middle] = scratch.states.len();
-            scratch.states.push(state);
+            let state = &scratch.states[scratch.places[halving.middle]];
+            if let Some(reason) = fault(task, state, &mut hint, context)? {
+                return Ok(Some(reason));
+            }
         }
         Ok(self.jumps(scratch).then_some(Reason::Closure))
     }
@@ -196,34 +194,36 @@ fn glance(
     task.clearance.finger_free(finger, &joints, X_HO, TipRule::Touches).err().map(|_| Reason::Collision)
 }
 
-/// The closed configuration at one step, with the joints near those of its neighbours.
-fn between(
+/// Appends the closed configuration at one step, with the joints near those of its neighbours.
+fn push_between(
     task: &Task<'_>,
-    scratch: &Scratch,
+    scratch: &mut Scratch,
     halving: Halving,
     count: usize,
-) -> Result<Configuration, Reason> {
-    let (from, to) = (&scratch.states[0], &scratch.states[1]);
-    let [low, high] = [halving.ends.0, halving.ends.1].map(|end| &scratch.states[scratch.places[end]]);
+) -> Result<(), Reason> {
     let s = halving.middle as f64 / count as f64;
-    let mut q = from.clone();
+    let Scratch { slides, states, places } = scratch;
+    let [low, high] = [halving.ends.0, halving.ends.1].map(|end| places[end]);
+    places[halving.middle] = states.len();
+    states.push(states[low].clone());
+    let (known, fresh) = states.split_at_mut(places[halving.middle]);
+    let (from, to, q) = (&known[0], &known[1], &mut fresh[0]);
     q.X_HO = interpolate(&from.X_HO, &to.X_HO, s);
-    for i in 0..q.joints.len() {
-        let finger = FingerIndex(i as u8);
+    for (finger, contact) in from.contacts.iter() {
         let ends = (&from.joints[finger], &to.joints[finger]);
-        if q.contacts[finger].is_none() {
+        if contact.is_none() {
             q.joints[finger] = ends.0.interpolate(ends.1, s);
             continue;
         }
-        let contact = scratch.slides[i].at(s);
+        let contact = slides[finger.index()].at(s);
         let p_HF =
             q.X_HO.rotation * contact.tip_center(task.hand.fingertip_radius()) + q.X_HO.translation.vector;
-        let near = low.joints[finger].interpolate(&high.joints[finger], halving.fraction());
+        let near = q.joints[finger].interpolate(&known[high].joints[finger], halving.fraction());
         let near = with_spare(&task.hand.finger(finger).spare, &near, ends, s);
         q.joints[finger] = task.hand.inverse(finger, &p_HF, &near).ok_or(Reason::Reach)?;
         q.contacts[finger] = Some(contact);
     }
-    Ok(q)
+    Ok(())
 }
 
 /// What is wrong with a closed configuration: stability first, because it costs less than collision.

@@ -53,7 +53,8 @@ impl Settings for RollingSettings {
 /// share of the tolerances.
 ///
 /// Stops at the last valid state: at a joint's limit, out of reach or at a singularity (`reach`), at a collision, where the grasp is no
-/// longer stable, where net slip uses up its share, and where a contact is lost or jumps on a concave edge (`closure`).
+/// longer stable, where net slip at a state uses up its share (within a step the tip may stray along the surface by as much as closure
+/// allows across it), and where a contact is lost or jumps on a concave edge (`closure`).
 #[derive(Clone, Debug)]
 pub struct Rolling {
     settings: RollingSettings,
@@ -96,73 +97,61 @@ impl LocalPlanner for Rolling {
             path.restart(from);
         }
         let roller = self.roller(task, from, to);
+        // Two states in turn: the one that is reached and the one that is tried.
         let mut state = roller.start(from);
+        let mut next = state.clone();
         let mut pace = Pace::new(roller.motion.step(task.resolution), self.settings.halvings);
         let (mut hint, mut stop) = (Hint::default(), None);
         while state.s < 1.0 && stop.is_none() {
             context.proceed()?;
-            match next(&roller, &state, &mut pace, &mut hint, context)? {
-                Ok(next) => {
-                    state = next;
-                    if let Some(path) = path.as_deref_mut() {
-                        path.states.push(state.q.clone());
-                    }
+            stop = obstacle(&roller, &state, &mut next, &mut pace, &mut hint, context)?;
+            if stop.is_none() {
+                std::mem::swap(&mut state, &mut next);
+                if let Some(path) = path.as_deref_mut() {
+                    path.states.push(state.q.clone());
                 }
-                Err(reason) => stop = Some(context.reject(SLOT, reason)),
             }
         }
+        let stop = stop.map(|reason| context.reject(SLOT, reason));
         Ok(Reached { end: state.q, fraction: state.s, stop })
     }
 }
 
-/// The next valid state, or why there is none.
-fn next(
+/// Makes `next` the next valid state, or says why there is none: stability before collision, because it costs less.
+fn obstacle(
     roller: &Roller<'_>,
     state: &State,
+    next: &mut State,
     pace: &mut Pace,
     hint: &mut Hint,
     context: &mut Context<'_>,
-) -> Result<Result<State, Reason>, CallError> {
-    let next = match step(roller, state, pace) {
-        Ok(next) => next,
-        Err(reason) => return Ok(Err(reason)),
-    };
-    Ok(match fault(roller, &next.q, hint, context)? {
-        Some(reason) => Err(reason),
-        None => Ok(next),
-    })
+) -> Result<Option<Reason>, CallError> {
+    let Roller { task, holding, .. } = roller;
+    if let Err(reason) = step(roller, state, next, pace) {
+        return Ok(Some(reason));
+    }
+    if !task.stability.test(&task.grasp(&next.q, *holding), hint, context)?.is_stable() {
+        return Ok(Some(Reason::Stability));
+    }
+    let free = task.clearance.configuration_free(&next.q, *holding, true);
+    Ok(free.is_err().then_some(Reason::Collision))
 }
 
 /// Steps as far as the pace, the state and what remains allow, halving until the contacts stay closed in between.
-fn step(roller: &Roller<'_>, state: &State, pace: &mut Pace) -> Result<State, Reason> {
+fn step(roller: &Roller<'_>, state: &State, next: &mut State, pace: &mut Pace) -> Result<(), Reason> {
     if state.longest < pace.finest {
         // So close to a singularity that a joint races.
         return Err(Reason::Reach);
     }
     let mut h = pace.next(state.longest, 1.0 - state.s);
     while h >= 0.5 * pace.finest {
-        match roller.advance(state, h) {
-            Ok(next) => return Ok(next),
+        match roller.advance(state, h, next) {
+            Ok(()) => return Ok(()),
             Err(Failure::Finer) => h = pace.halve(h),
             Err(Failure::Stop(reason)) => return Err(reason),
         }
     }
     Err(Reason::Closure)
-}
-
-/// What is wrong with a state: stability first, because it costs less than collision.
-fn fault(
-    roller: &Roller<'_>,
-    q: &Configuration,
-    hint: &mut Hint,
-    context: &mut Context<'_>,
-) -> Result<Option<Reason>, CallError> {
-    let Roller { task, holding, .. } = roller;
-    if !task.stability.test(&task.grasp(q, *holding), hint, context)?.is_stable() {
-        return Ok(Some(Reason::Stability));
-    }
-    let free = task.clearance.configuration_free(q, *holding, true);
-    Ok(free.is_err().then_some(Reason::Collision))
 }
 
 /// How long steps are: halved where the contacts bend, doubled again behind.

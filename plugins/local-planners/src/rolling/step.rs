@@ -103,9 +103,10 @@ impl Roller<'_> {
         ContactJacobian::new(tip, joints, &n_H, self.radius).speeds(&v_H)
     }
 
-    /// The state a part `h` of the motion further, or why there is none. Collision and stability are not looked at.
-    pub fn advance(&self, state: &State, h: f64) -> Result<State, Failure> {
-        let mut next = state.clone();
+    /// Makes `next` the state a part `h` of the motion further, or says why there is none (then `next` means nothing). Collision
+    /// and stability are not looked at.
+    pub fn advance(&self, state: &State, h: f64, next: &mut State) -> Result<(), Failure> {
+        next.clone_from(state);
         // The last step ends at 1 exactly, whatever the sum of the steps before it.
         next.s = if 1.0 - (state.s + h) < 1e-12 { 1.0 } else { state.s + h };
         next.q.X_HO = self.motion.pose(next.s);
@@ -118,14 +119,14 @@ impl Roller<'_> {
         }
         for finger in self.holding.iter() {
             let tip = self.task.hand.tip_kinematics(finger, &next.q.joints[finger]);
-            self.aim(&mut next, finger, &tip);
-            let slip_O = self.slip_of(state, &next, finger);
+            self.aim(next, finger, &tip);
+            let slip_O = self.slip_of(state, next, finger);
             next.slip_O[finger] += slip_O;
             if next.slip_O[finger].norm() > self.slip {
                 return Err(Failure::Stop(Reason::Slip));
             }
         }
-        Ok(next)
+        Ok(())
     }
 
     /// One finger's step: joints and contact at its end.

@@ -164,8 +164,11 @@ impl LocalPlanner for Rrt {
         }
         let start = End { joints: &from.joints[finger], contact: from.contacts[finger].as_ref() };
         let target = End { joints, contact };
+        if !others_hold(task, from, finger, context)? {
+            return Ok(refuse(SLOT, Reason::Stability, from, context));
+        }
         let flight = Flight::new(task, &self.levers, from, finger);
-        if let Some(reason) = unfit(&flight, target, context)? {
+        if let Some(reason) = unfit(&flight, target) {
             return Ok(refuse(SLOT, reason, from, context));
         }
         let mut scratch = SCRATCH.take();
@@ -185,31 +188,33 @@ impl LocalPlanner for Rrt {
     }
 }
 
-/// Why the motion cannot even begin or end, if so: the others do not hold the object, or the target is no place for the finger.
-fn unfit(
-    flight: &Flight<'_>,
-    target: End<'_>,
+/// Whether the other fingers hold the object; their grasp does not change, so one test holds for the whole motion.
+fn others_hold(
+    task: &Task<'_>,
+    from: &Configuration,
+    finger: FingerIndex,
     context: &mut Context<'_>,
-) -> Result<Option<Reason>, CallError> {
-    let Flight { task, from, finger, .. } = flight;
-    let others = from.holding().without(*finger);
-    // The grasp of the others does not change: one test holds for the whole motion.
+) -> Result<bool, CallError> {
+    let others = from.holding().without(finger);
     let grasp = task.grasp(from, others);
-    if others.is_empty() || !task.stability.test(&grasp, &mut Hint::default(), context)?.is_stable() {
-        return Ok(Some(Reason::Stability));
-    }
+    Ok(!others.is_empty() && task.stability.test(&grasp, &mut Hint::default(), context)?.is_stable())
+}
+
+/// Why the target is no place for the finger, if so.
+fn unfit(flight: &Flight<'_>, target: End<'_>) -> Option<Reason> {
+    let Flight { task, finger, .. } = flight;
     if !task.hand.within_limits(*finger, target.joints) {
-        return Ok(Some(Reason::Limits));
+        return Some(Reason::Limits);
     }
     let mut rule = TipRule::Clear(flight.clear());
     if let Some(contact) = target.contact {
         rule = TipRule::Touches;
         let gap = task.hand.tip_center(*finger, target.joints) - flight.center(contact, 0.0);
         if gap.norm() > 0.5 * task.tolerances.closure {
-            return Ok(Some(Reason::Closure));
+            return Some(Reason::Closure);
         }
     }
-    Ok((!flight.free(target.joints, rule)).then_some(Reason::Collision))
+    (!flight.free(target.joints, rule)).then_some(Reason::Collision)
 }
 
 /// Appends the motion to the path; the finger touches nothing before `end`, to which the last posture belongs.
