@@ -34,7 +34,7 @@ pub struct RlgSettings {
 impl Default for RlgSettings {
     /// Our choices: the paper names no numbers.
     fn default() -> Self {
-        Self { poses: 100, contacts: 30, anywhere: 0.2, spread_deg: 30.0 }
+        Self { poses: 100, contacts: 30, anywhere: 0.1, spread_deg: 30.0 }
     }
 }
 
