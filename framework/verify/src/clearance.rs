@@ -193,7 +193,7 @@ impl<'s> ClearanceCheck<'s> {
             (Core::Mesh(solid), Core::Segment(p, q)) => {
                 let X_AB = X_HA.inv_mul(X_HB);
                 let [p, q] = [p, q].map(|end| (X_AB * Point3::from(*end)).coords);
-                let gap = solid.from_segment(&p, &q, self.nearest[pair].facet);
+                let gap = solid.gap_to_segment(&p, &q, self.nearest[pair].facet);
                 self.nearest[pair] = gap;
                 if contained && solid.contains(&p) { 0.0 } else { gap.distance }
             }

@@ -137,7 +137,7 @@ pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: 
         }
         (Core::Segment(p, q), Core::Mesh(solid)) => {
             let (p, q) = (moved(p), moved(q));
-            if contained && solid.contains(&p) { 0.0 } else { solid.from_segment(&p, &q, 0).distance }
+            if contained && solid.contains(&p) { 0.0 } else { solid.gap_to_segment(&p, &q, 0).distance }
         }
         (Core::Cuboid { X, half }, Core::Cuboid { X: X_other, half: other }) => {
             let X = (X_BA * X).inv_mul(X_other);

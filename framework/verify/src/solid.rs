@@ -69,7 +69,7 @@ impl Solid {
     }
 
     /// Where a segment comes closest to the surface; `near` as for [`Self::closest`].
-    pub(crate) fn from_segment(&self, p: &Vec3, q: &Vec3, near: u32) -> Gap {
+    pub(crate) fn gap_to_segment(&self, p: &Vec3, q: &Vec3, near: u32) -> Gap {
         let line = segment(p, q);
         let first = between(&self.triangle(near), &line);
         let (low, high) = (line.a.min(line.b), line.a.max(line.b));

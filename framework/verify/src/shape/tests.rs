@@ -102,7 +102,7 @@ fn closest_points_do_not_depend_on_where_the_search_begins() {
 fn supports_give_separating_planes() {
     let Core::Mesh(solid) = torus() else { panic!() };
     let (a, b) = (Vec3::new(0.1, 0.02, 0.0), Vec3::new(0.1, -0.03, 0.01));
-    let Gap { distance, direction: n, .. } = solid.from_segment(&a, &b, 3);
+    let Gap { distance, direction: n, .. } = solid.gap_to_segment(&a, &b, 3);
     let plane = n.dot(&a).min(n.dot(&b)) - solid.support(&n);
     assert!(distance > 0.02 && plane <= distance + 1e-12 && plane > distance - 1e-3, "{plane} {distance}");
     let fine = Primitive::Ellipsoid { semi_axes: Vec3::new(0.1, 0.2, 0.3) };
