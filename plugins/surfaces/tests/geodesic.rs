@@ -55,15 +55,23 @@ fn irregular_convex_solids_agree_with_brute_force() {
 }
 
 #[test]
+fn round_solids_agree_with_brute_force() {
+    agrees_with_brute_force(&meshes::sphere(0.03, 2), 4, 30);
+    agrees_with_brute_force(&meshes::ellipsoid(Vec3::new(0.04, 0.025, 0.012), 2), 5, 30);
+    agrees_with_brute_force(&meshes::cylinder(0.025, 0.03, 40), 6, 30);
+}
+
+#[test]
 fn solids_that_are_not_convex_agree_with_brute_force() {
     agrees_with_brute_force(&meshes::angle_block(0.04, 0.02), 1, 200);
     agrees_with_brute_force(&meshes::torus(0.03, 0.012, 5, 4), 3, 60);
+    agrees_with_brute_force(&meshes::bumpy(0.03, 0.15, 1), 7, 30);
 }
 
-/// Against a graph with 12 points on every edge, which is never too short, and too long by less than 6e-3.
+/// Against a graph with 12 points on every edge, which is never too short.
 ///
-/// Our paths are real paths of the surface, so they are never too short either: being shorter than the graph's they are
-/// nearer to the truth than the graph.
+/// Our paths are real paths of the surface (tested below), so they are never too short either: being shorter than the
+/// graph's they are nearer to the truth than the graph.
 #[test]
 fn fine_meshes_agree_with_dense_graphs() {
     for mesh in [
@@ -84,7 +92,6 @@ fn fine_meshes_agree_with_dense_graphs() {
                 let to = anywhere(&mesh, &mut random);
                 let (ours, bound) = (length(&surface, &from, &to), graph.to(&lengths, &from.p_OC, &to.p_OC));
                 assert!(ours <= bound * (1.0 + 2.1e-4), "{ours} longer than {bound}: {from:?} {to:?}");
-                assert!(ours >= bound * (1.0 - 6e-3), "{ours} shorter than {bound}: {from:?} {to:?}");
             }
         }
     }

@@ -26,8 +26,8 @@ fn deviation(mesh: &Mesh, path: &SurfacePath) -> f64 {
     for pair in path.waypoints.windows(2) {
         let (a, b) = (pair[0].contact, pair[1].contact);
         let gap = (a.tip_center(RADIUS) - b.tip_center(RADIUS)).norm();
-        assert!(gap <= pair[1].lift_length - pair[0].lift_length + 1e-8, "the fingertip leaps by {gap}");
-        if gap < 1e-8 {
+        assert!(gap <= pair[1].lift_length - pair[0].lift_length + 1e-9, "the fingertip leaps by {gap}");
+        if gap < 1e-9 {
             continue; // the contact jumps, the fingertip rests
         }
         for k in 0..=8 {

@@ -11,11 +11,11 @@ use crate::polyhedron::Polyhedron;
 use regrasp_api::{Contact, Projection, SurfacePath, Vec3, Waypoint, slerp_normals};
 
 /// Depth (m) to which the ball may sink into the facets: rounding, far below every tolerance of a plan.
-const SINK: f64 = 1e-9;
+const SINK: f64 = 1e-10;
 /// How far (m) a way between two waypoints may stray from the offset surface.
 const STRAY: f64 = 5e-7;
 /// Two centres this close (m) are one place.
-const SAME: f64 = 1e-9;
+const SAME: f64 = 2e-10;
 /// Corrections before a place counts as unreachable.
 const SETTLE_STEPS: usize = 60;
 /// Places looked at in one hollow before the fingertip counts as stuck.

@@ -1,7 +1,7 @@
 //! The path of the fingertip above a path of the contact point.
 
 use super::trace::Leg;
-use crate::polyhedron::Polyhedron;
+use crate::polyhedron::{Place, Polyhedron};
 use regrasp_api::{Contact, SurfacePath, Vec3};
 
 /// Angles (rad) and lengths (m) below this do not make a waypoint of their own.
@@ -23,6 +23,11 @@ pub(super) fn lift(
     path: &mut SurfacePath,
 ) {
     path.restart(*from);
+    if stays_on_edge(polyhedron, from, to) {
+        let turned = radius * angle(&from.n_O, &to.n_O);
+        path.push(*to, (to.p_OC - from.p_OC).norm().hypot(turned));
+        return;
+    }
     for (index, leg) in legs.iter().enumerate() {
         let n_O = polyhedron.mesh.normal(leg.facet);
         let end = legs.get(index + 1).map_or(to.p_OC, |next| next.p_OP);
@@ -34,9 +39,16 @@ pub(super) fn lift(
     if let Some(last) = path.waypoints.last_mut() {
         last.contact = *to;
     }
-    if path.waypoints.len() == 1 && from != to {
-        path.push(*to, 0.0);
-        path.waypoints[0].contact = *from;
+    path.waypoints[0].contact = *from;
+}
+
+/// Whether both contacts lie on one edge or at one vertex: the ball slides along it while it turns between its facets.
+fn stays_on_edge(polyhedron: &Polyhedron, from: &Contact, to: &Contact) -> bool {
+    let place = |contact: &Contact| polyhedron.place(contact.facet, &contact.p_OC);
+    match (place(from), place(to)) {
+        (Place::Vertex(a), Place::Vertex(b)) => a == b,
+        (Place::Edge(a), Place::Edge(b)) => a == b || polyhedron.half_edges[a as usize].twin == b,
+        _ => from == to,
     }
 }
 

@@ -157,7 +157,7 @@ impl SurfaceParam for Geodesic {
     fn sample(&self, random: &mut Random) -> Contact {
         for _ in 0..MOST_SAMPLES {
             let contact = self.on_facets(random);
-            if self.polyhedron.convex || self.follower().is_free(&contact, 1e-9) {
+            if self.polyhedron.convex || self.follower().is_free(&contact, 1e-10) {
                 return contact;
             }
         }
