@@ -31,7 +31,7 @@ pub enum Command {
 Ctrl-C and the time limit end the search and keep what was found: with `-o plan.json`, a motion that reaches some of the goals and \
 verifies goes to `plan.partial.json`. A plan that does not verify is never written under the wished name but to `plan.rejected.json`.\n\n\
 Examples:\n  regrasp plan sphere\n  regrasp plan my-problem.toml --seed 7 -o plan.json\n  \
-regrasp plan cubic --use stability-test=socp --set graph-strategy.bias=0.3 --rejections")]
+regrasp plan cubic --use stability-test=socp --set graph-strategy.end=0.8 --rejections")]
 pub struct PlanArgs {
     /// A scenario file, or the name of a built-in scenario.
     pub scenario: String,

@@ -55,7 +55,7 @@ fn schema(entry: &Entry) -> Value {
 
 fn list(entries: &[&'static Entry]) -> String {
     let defaults = Choices::default();
-    let mut table = Table::new(3, &["plugin", "slots (* by default)", "what it is"]);
+    let mut table = Table::new("<", &["plugin", "slots (* by default)", "what it is"]);
     for entry in entries {
         let slot = |&slot: &Slot| {
             let star = if defaults.choice(slot).id == entry.id { "*" } else { "" };
@@ -78,7 +78,7 @@ fn details(entry: &Entry) -> String {
     let Some(properties) = properties.filter(|properties| !properties.is_empty()) else {
         return text + "  no settings\n";
     };
-    let mut table = Table::new(3, &["setting", "default", "meaning"]);
+    let mut table = Table::new("<", &["setting", "default", "meaning"]);
     for (key, property) in properties {
         let default = property.get("default").map(Value::to_string).unwrap_or_default();
         let meaning = property.get("description").and_then(Value::as_str).unwrap_or_default();

@@ -224,7 +224,7 @@ pub fn rejections(statistics: &Statistics) -> String {
     let reasons: Vec<Reason> = Reason::ALL.into_iter().filter(occurred).collect();
     let head: Vec<&str> =
         ["rejections by cause", "calls"].into_iter().chain(reasons.iter().map(|r| r.name())).collect();
-    let mut table = Table::new(1, &head);
+    let mut table = Table::new("<>", &head);
     for (slot, plugin) in &statistics.plugins {
         let count = |reason: &Reason| plugin.rejections.get(reason).map(u64::to_string).unwrap_or("-".into());
         let cells = [slot.name().to_owned(), plugin.calls.to_string()].into_iter();

@@ -17,7 +17,7 @@ pub fn run(args: &ScenariosArgs) -> Result<(), Failure> {
     if args.json {
         return say_json(&Value::Array(scenarios.iter().map(described).collect()));
     }
-    let mut table = Table::new(2, &["scenario", "what it shows"]);
+    let mut table = Table::new("<", &["scenario", "what it shows"]);
     scenarios.iter().for_each(|scenario| table.row([scenario.name.clone(), scenario.summary.clone()]));
     let hands: Vec<&str> = HANDS.iter().map(|hand| hand.name).collect();
     say(&format!("{}\n  hands: {}\n", table.text(), hands.join(", ")))

@@ -1,21 +1,26 @@
 //! Tables that line up.
 
-/// Rows of cells; the first row is the head. The first column is flush left, the others flush right.
+/// Rows of cells; the first row is the head.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     rows: Vec<Vec<String>>,
-    left: usize,
+    /// For each column `<` for flush left or `>` for flush right; the last letter stands for all that follow.
+    sides: &'static str,
 }
 
 impl Table {
-    /// A table whose first `left` columns are flush left.
-    pub fn new(left: usize, head: &[&str]) -> Self {
-        Self { rows: vec![head.iter().map(ToString::to_string).collect()], left }
+    /// A table with columns flush left or right as `sides` says, such as `<>>`.
+    pub fn new(sides: &'static str, head: &[&str]) -> Self {
+        Self { rows: vec![head.iter().map(ToString::to_string).collect()], sides }
     }
 
     /// Adds a row.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
+    }
+
+    fn is_left(&self, column: usize) -> bool {
+        self.sides.chars().nth(column).or(self.sides.chars().last()) == Some('<')
     }
 
     /// The text, each line indented by two spaces.
@@ -28,7 +33,7 @@ impl Table {
         let widths: Vec<usize> = (0..columns).map(width).collect();
         let line = |row: &Vec<String>| {
             let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
-                if column < self.left { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+                if self.is_left(column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
             });
             format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned() + "\n"
         };
@@ -42,7 +47,7 @@ mod tests {
 
     #[test]
     fn columns_line_up() {
-        let mut table = Table::new(1, &["name", "n"]);
+        let mut table = Table::new("<>", &["name", "n"]);
         table.row(["a".into(), "10".into()]);
         table.row(["µ long".into(), "5".into()]);
         assert_eq!(table.text(), "  name     n\n  a       10\n  µ long   5\n");

@@ -26,7 +26,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
 
 /// Checks as a table, one a line.
 pub fn check_table<'a>(checks: impl Iterator<Item = &'a Check>) -> String {
-    let mut table = Table::new(2, &["check", "", "worst", "limit", "unit", "where"]);
+    let mut table = Table::new("<<>><", &["check", "", "worst", "limit", "unit", "where"]);
     for check in checks {
         let verdict = if check.ok { "ok" } else { "FAILED" };
         let worst = check.worst.map_or("-".to_owned(), number);

@@ -83,6 +83,17 @@ fn overrides_are_recorded() {
     );
 }
 
+#[test]
+fn the_readmes_scenario_works() {
+    let readme = include_str!("../../README.md");
+    let scenario =
+        readme.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).expect("a TOML block");
+    let desk = Desk::new();
+    desk.write("mine.toml", scenario);
+    let said = desk.run("plan mine.toml");
+    assert_eq!(said.code, 0, "{}", said.err);
+}
+
 /// A problem without a solution that is not given up soon: the ball is to go to the other side of a wall.
 fn endless(desk: &Desk) {
     let wall =
