@@ -1,6 +1,6 @@
 //! What a call is handed besides the task: its random stream, its budget, and a recorder of what happened.
 
-use crate::{CallError, Random, Reason, Slot};
+use crate::{CallError, Random, Reason, Slot, pending_fault};
 
 /// Whether the run should stop now: a deadline, Ctrl-C. The command line implements it; libraries own no clock.
 pub trait Interrupt: Sync {
@@ -59,8 +59,12 @@ impl<'a> Context<'a> {
         Self { random, tally: Tally::default(), interrupt }
     }
 
-    /// Ends the call with [`CallError::Interrupted`] where the run should stop. Call it once per step of a long loop.
+    /// Ends the call with [`CallError::Interrupted`] where the run should stop, or with the panic of a plugin that this call asked for a
+    /// value and that could not return it as an error. Call it once per step of a long loop.
     pub fn proceed(&self) -> Result<(), CallError> {
+        if let Some(fault) = pending_fault() {
+            return Err(fault);
+        }
         if self.interrupt.interrupted() { Err(CallError::Interrupted) } else { Ok(()) }
     }
 

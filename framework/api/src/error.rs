@@ -52,6 +52,9 @@ pub enum SettingsError {
         /// The allowed range, such as `3..=64`.
         range: String,
     },
+    /// The plugin panicked while it looked at them.
+    #[error("{0}")]
+    Panicked(String),
 }
 
 /// A plugin cannot be built from these settings and parts.
@@ -64,4 +67,7 @@ pub enum BuildError {
     /// The plugin does not work for this hand or object; the text says why and what to use.
     #[error("{0}")]
     Unsupported(String),
+    /// It panicked while it was built.
+    #[error("{0}")]
+    Panicked(String),
 }

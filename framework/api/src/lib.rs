@@ -15,6 +15,7 @@
 mod configuration;
 mod context;
 mod error;
+mod export;
 mod finger;
 mod grasp;
 mod mesh;
@@ -32,6 +33,7 @@ mod task;
 pub use configuration::*;
 pub use context::*;
 pub use error::*;
+pub use export::*;
 pub use finger::*;
 pub use grasp::*;
 pub use inventory;

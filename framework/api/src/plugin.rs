@@ -147,6 +147,7 @@ pub enum Build {
 }
 
 /// A plugin's entry in the registry.
+#[derive(Clone, Copy)]
 pub struct Entry {
     /// `role/name` in kebab case, such as `stability-test/force-closure`.
     pub id: &'static str,

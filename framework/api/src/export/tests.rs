@@ -1,0 +1,161 @@
+//! Guards round plugins that panic.
+
+use super::*;
+use crate::*;
+
+struct Panics;
+
+impl ContactModel for Panics {
+    fn cone(&self, _: &Contact, _: f64) -> Cone<'_> {
+        panic!("no cone")
+    }
+
+    fn fewest_contacts(&self) -> usize {
+        3
+    }
+}
+
+impl GraphStrategy for Panics {
+    fn next(&self, _: &dyn GraphView, _: &mut Context<'_>) -> Result<Action, CallError> {
+        panic!("no {}", "step")
+    }
+}
+
+impl Drop for Panics {
+    fn drop(&mut self) {
+        if !std::thread::panicking() {
+            panic!("no end");
+        }
+    }
+}
+
+struct Broken;
+impl Exported for Broken {
+    const ENTRY: Entry = Entry {
+        id: "contact-model/broken",
+        slots: &[Slot::ContactModel],
+        summary: "panics wherever it can",
+        references: &["none"],
+        schema: || panic!("no schema"),
+        check: |_| panic!("no check"),
+        build: Build::ContactModel(
+            |json, _| if json.is_empty() { Ok(Box::new(Panics)) } else { panic!("no build") },
+        ),
+    };
+}
+
+const CONTACT: Contact = Contact { facet: 0, p_OC: Vec3::new(0.0, 0.0, 1.0), n_O: Vec3::new(0.0, 0.0, 1.0) };
+
+fn panicked(message: &str) -> CallError {
+    CallError::Panicked { plugin: "contact-model/broken".into(), message: message.into() }
+}
+
+#[test]
+fn a_value_after_a_panic_is_harmless_and_the_fault_ends_the_call() {
+    let model = guarded::<dyn ContactModel>("contact-model/broken", || Ok(Box::new(Panics))).unwrap();
+    assert_eq!(model.fewest_contacts(), 3);
+    assert_eq!(take_fault(), None);
+    assert_eq!(model.cone(&CONTACT, 0.5), Cone::Elliptic { mu: 0.0, gamma: 0.0 });
+    let context = Context::new(Random::from_key(0, 0, 0, 0), &Uninterrupted);
+    assert_eq!(context.proceed(), Err(panicked("no cone")));
+    assert_eq!(unless_fault(Ok(())), Err(panicked("no cone")));
+    assert_eq!(context.proceed(), Ok(()));
+    drop(model);
+    assert_eq!(take_fault(), Some(panicked("no end")));
+}
+
+#[test]
+fn a_call_that_can_fail_fails_with_the_panics_message() {
+    struct Nothing;
+    impl GraphView for Nothing {
+        fn node_count(&self) -> usize {
+            0
+        }
+        fn generated(&self) -> (usize, usize) {
+            (0, 0)
+        }
+        fn start(&self) -> NodeId {
+            NodeId(0)
+        }
+        fn goals(&self) -> &[NodeId] {
+            &[]
+        }
+        fn component(&self, _: NodeId) -> ComponentId {
+            ComponentId(0)
+        }
+        fn components(&self) -> &[ComponentId] {
+            &[]
+        }
+        fn joined(&self) -> bool {
+            false
+        }
+        fn distance(&self, _: NodeId, _: NodeId) -> f64 {
+            0.0
+        }
+        fn attempted(&self, _: NodeId, _: NodeId, _: EdgeKind) -> bool {
+            false
+        }
+        fn edges(&self) -> &[EdgeView] {
+            &[]
+        }
+        fn shortest_path(&self) -> Vec<EdgeId> {
+            Vec::new()
+        }
+    }
+    let strategy = guarded::<dyn GraphStrategy>("contact-model/broken", || Ok(Box::new(Panics))).unwrap();
+    let mut context = Context::new(Random::from_key(0, 0, 0, 0), &Uninterrupted);
+    assert_eq!(strategy.next(&Nothing, &mut context), Err(panicked("no step")));
+    assert_eq!(take_fault(), None, "the error was returned and needs no memory");
+    drop(strategy);
+    take_fault();
+}
+
+#[test]
+fn every_function_of_an_entry_is_guarded() {
+    const ENTRY: Entry = GuardedEntry::<Broken>::ENTRY;
+    assert_eq!((ENTRY.id, ENTRY.slots), (Broken::ENTRY.id, Broken::ENTRY.slots));
+    assert_eq!((ENTRY.schema)(), "{}");
+    assert_eq!(take_fault(), Some(panicked("no schema")));
+    assert!((ENTRY.check)("").unwrap_err().to_string().contains("panicked: no check"));
+    let Build::ContactModel(build) = ENTRY.build else { panic!("another role") };
+    let object = ObjectModel::new(
+        Mesh::new(
+            vec![Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()],
+            vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+        )
+        .unwrap(),
+        None,
+        0.1,
+        0.8,
+    );
+    let parts = Parts { object: &object, hand: &NoHand };
+    let error = build("{}", &parts).err().unwrap();
+    assert!(error.to_string().contains("`contact-model/broken` panicked: no build"), "{error}");
+    let model = build("", &parts).unwrap();
+    model.cone(&CONTACT, 0.5);
+    assert_eq!(take_fault(), Some(panicked("no cone")));
+    drop(model);
+    take_fault();
+}
+
+struct NoHand;
+impl Hand for NoHand {
+    fn finger_count(&self) -> usize {
+        0
+    }
+    fn finger(&self, _: FingerIndex) -> &FingerModel {
+        unreachable!("the hand has no finger")
+    }
+    fn fingertip_radius(&self) -> f64 {
+        0.01
+    }
+    fn tip_center(&self, _: FingerIndex, _: &FingerJoints) -> Vec3 {
+        Vec3::zeros()
+    }
+    fn tip_kinematics(&self, _: FingerIndex, _: &FingerJoints) -> TipKinematics {
+        unreachable!("the hand has no finger")
+    }
+    fn inverse(&self, _: FingerIndex, _: &Vec3, _: &FingerJoints) -> Option<FingerJoints> {
+        None
+    }
+}
