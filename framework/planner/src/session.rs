@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 use regrasp_api::{
-    ClosedChainSampler, Context, GraphStrategy, Interrupt, LocalPlanner, Pose, Random, Tally, Task,
+    CallError, ClosedChainSampler, Context, GraphStrategy, Interrupt, LocalPlanner, Pose, Random, Tally,
+    Task, unless_fault,
 };
 use std::collections::VecDeque;
 
@@ -65,15 +66,17 @@ impl<'a> Session<'a> {
     }
 
     /// Runs `call` in the context of its key, and returns its result with what it counted.
+    ///
+    /// A plugin that panicked where it could not return an error makes the result worthless: then it is that panic.
     pub fn counted<T>(
         &self,
         kind: Call,
         a: u64,
         b: u64,
-        call: impl FnOnce(&mut Context<'_>) -> T,
-    ) -> Counted<T> {
+        call: impl FnOnce(&mut Context<'_>) -> Result<T, CallError>,
+    ) -> Counted<Result<T, CallError>> {
         let mut context = self.context(kind, a, b);
-        let result = call(&mut context);
+        let result = unless_fault(call(&mut context));
         Counted { result, tally: context.tally }
     }
 
@@ -124,8 +127,8 @@ pub(crate) fn leg_task<'a>(task: &Task<'a>, landmarks: &'a [Pose]) -> Task<'a> {
 mod tests {
     use super::*;
     use regrasp_api::{
-        Action, CallError, Configuration, Contact, FingerSet, GraphView, Path, PerFinger, PoseRequest,
-        Reached, Target, Uninterrupted,
+        Action, Configuration, Contact, FingerSet, GraphView, Path, PerFinger, PoseRequest, Reached, Target,
+        Uninterrupted,
     };
     use std::sync::atomic::{AtomicUsize, Ordering};
 

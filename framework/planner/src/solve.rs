@@ -12,6 +12,7 @@ use crate::smooth::Smoother;
 use regrasp_api::{
     CallError, Clearance, Configuration, ContactModel, FingerGrasp, FingerSet, Hand, Interrupt, NodeId,
     ObjectModel, Pose, PoseDescription, Problem, StabilityTest, SurfaceParam, Tally, Task, Vec3,
+    unless_fault,
 };
 use regrasp_plan::{Motion, Segment, Statistics, TimingLimits, assign_times, plugin_statistics};
 
@@ -249,8 +250,11 @@ impl Run<'_> {
 
     fn given(&mut self, end: End, X_HO: Pose, grasp: &[FingerGrasp]) -> Result<Configuration, PlanError> {
         let mut context = self.session.context(Call::Start, 1, 0);
-        let q = endpoints::given(&self.task, end, X_HO, grasp, &mut context)?;
-        self.warnings.extend(endpoints::warning(&self.task, end, &q, &mut context)?);
+        let q = endpoints::given(&self.task, end, X_HO, grasp, &mut context);
+        // A plugin that panicked on the way made the verdict on the grasp worthless.
+        unless_fault(Ok(()))?;
+        let q = q?;
+        self.warnings.extend(unless_fault(endpoints::warning(&self.task, end, &q, &mut context))?);
         Ok(q)
     }
 
