@@ -83,20 +83,16 @@ impl<'s> ContactChecks<'s> {
         frames: &Frames,
     ) -> [Option<Touch>; MAX_FINGERS] {
         let mut touches = [None; MAX_FINGERS];
+        let at = state + sample / SAMPLES;
         for (finger, found) in touches.iter_mut().enumerate().take(self.hand.fingers.len()) {
-            let at = state + sample / SAMPLES;
-            if !leg.states[at].holds(finger) {
-                continue;
-            }
+            let Some(claimed) = &leg.states[at].record.contacts[finger] else { continue };
             let p_OTip = frames.p_OTip(finger);
             let touch = Touch::find(self.scene, &p_OTip, self.hand.tip_radius, self.facets[finger]);
             self.facets[finger] = touch.facet;
-            let place = |fraction: f64| Place { finger: Some(finger), ..leg.between(state, fraction) };
             let fraction = sample as f64 / SAMPLES as f64;
-            self.closure.note(touch.gap.abs(), || place(fraction));
-            if sample.is_multiple_of(SAMPLES)
-                && let Some(claimed) = &leg.states[at].record.contacts[finger]
-            {
+            let place = || Place { finger: Some(finger), ..leg.between(state, fraction) };
+            self.closure.note(touch.gap.abs(), place);
+            if sample.is_multiple_of(SAMPLES) {
                 self.compare(
                     claimed,
                     &touch,
@@ -106,7 +102,7 @@ impl<'s> ContactChecks<'s> {
                 );
             }
             if leg.moving.is_none() {
-                self.roll(finger, touch, p_OTip, frames, || place(fraction));
+                self.roll(finger, touch, p_OTip, frames, place);
             }
             *found = Some(touch);
         }

@@ -55,13 +55,16 @@ pub(crate) fn goals(plan: &Plan, legs: &[Leg<'_>], tolerances: &Tolerances) -> [
             }
         }
     }
-    let mut complete = Gauge::new(COMPLETE, "goals missing", Side::AtMost, 0.0);
-    let missing = goals.len().saturating_sub(plan.goals_reached.len());
-    complete.note(missing as f64, || Place {
-        goal: (missing > 0).then_some(plan.goals_reached.len()),
-        ..Default::default()
-    });
-    [reached.check(), complete.check()]
+    [reached.check(), complete(plan)]
+}
+
+/// All goals of the scenario are claimed.
+fn complete(plan: &Plan) -> Check {
+    let mut gauge = Gauge::new(COMPLETE, "goals missing", Side::AtMost, 0.0);
+    let reached = plan.goals_reached.len();
+    let missing = plan.scenario.problem.goal.len().saturating_sub(reached);
+    gauge.note(missing as f64, || Place { goal: (missing > 0).then_some(reached), ..Default::default() });
+    gauge.check()
 }
 
 /// A plan without segments: its start must be its goal.

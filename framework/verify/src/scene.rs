@@ -58,21 +58,26 @@ impl Scene {
             let named = |e| format!("obstacle `{}`: {e}", obstacle.name);
             scene.add_described(Body::Obstacle(index), &placed).map_err(named)?;
         }
+        scene.add_fingers(problem, hand, travel)?;
+        scene.pair_up(problem, hand)?;
+        Ok(scene)
+    }
+
+    fn add_fingers(&mut self, problem: &Problem, hand: &Chains, travel: &[f64]) -> Result<(), String> {
         for (f, (finger, chain)) in problem.hand.finger.iter().zip(&hand.fingers).enumerate() {
             let index = FingerIndex(f as u8);
             for (link, joint) in finger.joint.iter().enumerate() {
                 for placed in &joint.link {
                     let body = Body::Link(index, link as u8);
                     let named = |e| format!("a link of finger `{}`: {e}", finger.name);
-                    scene.add_described(body, placed).map_err(named)?;
-                    scene.attach(chain, link, travel);
+                    self.add_described(body, placed).map_err(named)?;
+                    self.attach(chain, link, travel);
                 }
             }
-            scene.add(Body::Fingertip(index), Core::Point(chain.p_LTip), hand.tip_radius);
-            scene.attach(chain, chain.joints.len() - 1, travel);
+            self.add(Body::Fingertip(index), Core::Point(chain.p_LTip), hand.tip_radius);
+            self.attach(chain, chain.joints.len() - 1, travel);
         }
-        scene.pair_up(problem, hand)?;
-        Ok(scene)
+        Ok(())
     }
 
     fn add_described(&mut self, body: Body, placed: &PlacedShape) -> Result<(), String> {

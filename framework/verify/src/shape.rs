@@ -6,7 +6,7 @@ use parry3d_f64::math::{Pose as ParryPose, Rot3, Vector};
 use parry3d_f64::query::details::distance_segment_segment;
 use parry3d_f64::query::{self, PointQuery};
 use parry3d_f64::shape::{Cuboid, Segment, Shape as ParryShape};
-use regrasp_api::{Mesh, PlacedShape, Pose, Shape, Vec3};
+use regrasp_api::{Mesh, MeshSource, PlacedShape, Pose, Shape, Vec3};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -47,24 +47,8 @@ impl Core {
                 }
                 (Self::Cuboid { X, half: Vec3::from(*size) / 2.0 }, 0.0)
             }
-            Shape::HalfSpace { normal, offset } => {
-                let n = Vec3::from(*normal);
-                if !(n.norm().is_finite() && n.norm() > 1e-9 && offset.is_finite()) {
-                    return Err("a half-space's normal must be finite and not zero, its offset finite".into());
-                }
-                let n = X.rotation * n.normalize();
-                (Self::HalfSpace { n, offset: offset + n.dot(&X.translation.vector) }, 0.0)
-            }
-            Shape::Mesh(source) => {
-                if source.file.is_some() {
-                    return Err("the mesh is in another file; a plan must stand alone".into());
-                }
-                let mesh = regrasp_world::load_mesh(source, Path::new(""), "mesh");
-                let mesh = mesh.map_err(|error| error.to_string())?;
-                let vertices = mesh.vertices().iter().map(|v| point((*v).into()).coords).collect();
-                let moved = Mesh::new(vertices, mesh.facets().to_vec()).map_err(|e| e.to_string())?;
-                (Self::Mesh(Arc::new(Solid::new(&moved)?)), 0.0)
-            }
+            Shape::HalfSpace { normal, offset } => (half_space(normal, *offset, &X)?, 0.0),
+            Shape::Mesh(source) => (mesh(source, &X)?, 0.0),
         })
     }
 
@@ -111,6 +95,25 @@ impl Core {
     }
 }
 
+fn half_space(normal: &[f64; 3], offset: f64, X: &Pose) -> Result<Core, String> {
+    let n = Vec3::from(*normal);
+    if !(n.norm().is_finite() && n.norm() > 1e-9 && offset.is_finite()) {
+        return Err("a half-space's normal must be finite and not zero, its offset finite".into());
+    }
+    let n = X.rotation * n.normalize();
+    Ok(Core::HalfSpace { n, offset: offset + n.dot(&X.translation.vector) })
+}
+
+fn mesh(source: &MeshSource, X: &Pose) -> Result<Core, String> {
+    if source.file.is_some() {
+        return Err("the mesh is in another file; a plan must stand alone".into());
+    }
+    let mesh = regrasp_world::load_mesh(source, Path::new(""), "mesh").map_err(|error| error.to_string())?;
+    let vertices = mesh.vertices().iter().map(|v| (X * Point3::from(*v)).coords).collect();
+    let moved = Mesh::new(vertices, mesh.facets().to_vec()).map_err(|error| error.to_string())?;
+    Ok(Core::Mesh(Arc::new(Solid::new(&moved)?)))
+}
+
 /// The distance of two cores given in frames A and B (m); not positive where they overlap.
 ///
 /// Exact for surfaces; where `contained` is set, also that neither lies wholly inside the other is looked at (a mesh is only its surface to
@@ -143,26 +146,32 @@ pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: 
             let X = (X_BA * X).inv_mul(X_other);
             apart(&cuboid(half), &parry_pose(&X), &cuboid(other))
         }
-        (Core::Cuboid { X, half }, Core::Mesh(solid)) => {
-            let X = X_BA * X;
-            let inside = |v: &Vec3| {
-                let p = X.inverse_transform_point(&Point3::from(*v)).coords;
-                p.iter().zip(half.iter()).all(|(x, h)| x.abs() <= *h)
-            };
-            if contained && (inside(&solid.vertices[0]) || solid.contains(&X.translation.vector)) {
-                return 0.0;
-            }
-            apart(&cuboid(half), &parry_pose(&X.inverse()), solid.surface())
-        }
-        (Core::Mesh(first), Core::Mesh(second)) => {
-            let back = X_BA.inverse() * Point3::from(second.vertices[0]);
-            if contained && (second.contains(&moved(&first.vertices[0])) || first.contains(&back.coords)) {
-                return 0.0;
-            }
-            apart(first.surface(), &parry_pose(&X_BA.inverse()), second.surface())
-        }
+        (Core::Cuboid { X, half }, Core::Mesh(solid)) => of_box_and_mesh(&(X_BA * X), half, solid, contained),
+        (Core::Mesh(first), Core::Mesh(second)) => of_meshes(&X_BA, first, second, contained),
         _ => unreachable!("the cores are in the order of their ranks"),
     }
+}
+
+/// A box at X in the mesh's frame.
+fn of_box_and_mesh(X: &Pose, half: &Vec3, solid: &Solid, contained: bool) -> f64 {
+    let inside = |v: &Vec3| {
+        let p = X.inverse_transform_point(&Point3::from(*v)).coords;
+        p.iter().zip(half.iter()).all(|(x, h)| x.abs() <= *h)
+    };
+    if contained && (inside(&solid.vertices[0]) || solid.contains(&X.translation.vector)) {
+        return 0.0;
+    }
+    apart(&cuboid(half), &parry_pose(&X.inverse()), solid.surface())
+}
+
+/// The first mesh at X in the second one's frame.
+fn of_meshes(X: &Pose, first: &Solid, second: &Solid, contained: bool) -> f64 {
+    let there = (X * Point3::from(first.vertices[0])).coords;
+    let back = X.inverse_transform_point(&Point3::from(second.vertices[0])).coords;
+    if contained && (second.contains(&there) || first.contains(&back)) {
+        return 0.0;
+    }
+    apart(first.surface(), &parry_pose(&X.inverse()), second.surface())
 }
 
 /// The distance of a point from a core in its own frame; negative inside.

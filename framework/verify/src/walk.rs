@@ -122,6 +122,26 @@ impl Walk<'_> {
         self.gather(sampled, tolerances)
     }
 
+    /// The segment's first state.
+    fn begin(
+        &self,
+        leg: &Leg<'_>,
+        sampled: &mut Sampled<'_>,
+        frames: &mut Frames,
+        touches: &mut [Option<Touch>; MAX_FINGERS],
+    ) {
+        sampled.contacts.start();
+        sampled.stability.start();
+        sampled.lift.start();
+        frames.place(self.hand, leg, 0, 0.0);
+        *touches = sampled.contacts.sample(leg, 0, 0, frames);
+        sampled.stability.sample(leg, 0, 0, touches);
+        sampled.clearance.start(leg, frames);
+        if let Some(finger) = leg.moving {
+            sampled.lift.sample(finger, 0, 0, frames);
+        }
+    }
+
     fn segment(
         &self,
         leg: &Leg<'_>,
@@ -129,16 +149,7 @@ impl Walk<'_> {
         frames: &mut [Frames],
         touches: &mut [[Option<Touch>; MAX_FINGERS]; SAMPLES + 1],
     ) {
-        sampled.contacts.start();
-        sampled.stability.start();
-        sampled.lift.start();
-        frames[SAMPLES].place(self.hand, leg, 0, 0.0);
-        touches[SAMPLES] = sampled.contacts.sample(leg, 0, 0, &frames[SAMPLES]);
-        sampled.stability.sample(leg, 0, 0, &touches[SAMPLES]);
-        sampled.clearance.start(leg, &frames[SAMPLES]);
-        if let Some(finger) = leg.moving {
-            sampled.lift.sample(finger, 0, 0, &frames[SAMPLES]);
-        }
+        self.begin(leg, sampled, &mut frames[SAMPLES], &mut touches[SAMPLES]);
         for state in 0..leg.states.len() - 1 {
             frames.swap(0, SAMPLES);
             touches.swap(0, SAMPLES);

@@ -12,7 +12,7 @@ pub(crate) const LEAST_SLACK: f64 = 1e-8;
 const LEAST_SINGULAR: f64 = 1e-6;
 
 /// One contact of a grasp, torques about the claimed centre and in units of force times the claimed length.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Contact {
     /// The point, from the centre and divided by the length.
     pub(crate) r: Vec3,

@@ -6,7 +6,7 @@ mod socp;
 use crate::contact_checks::Touch;
 use crate::track::{Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
-use force::{Contact, Forces, LEAST_SLACK, Proof};
+use force::{Contact, LEAST_SLACK, Proof};
 use regrasp_api::{MAX_FINGERS, Vec3};
 use regrasp_plan::{Claims, ConeClaim, Extreme, Place};
 
@@ -15,14 +15,19 @@ const MOST_FAILURES: usize = 100;
 /// Grasps of smallest margin for which the best force is sought again: each one's bound can only rise.
 const MOST_REFINEMENTS: usize = 24;
 
+/// The part of the solver's slack below which a carried force is no longer taken: the best one at this grasp may be far better.
+const DWINDLED: f64 = 0.4;
+
 /// Follows the grasp along the plan.
 pub(crate) struct StabilityCheck {
     gauge: Gauge,
     cone: Option<ConeClaim>,
     center_O: Vec3,
     length: f64,
-    /// The last internal force, and whether it belongs to the same contacts.
-    carried: Option<Forces>,
+    /// The last internal force of the same contacts ...
+    carried: Option<Proof>,
+    /// ... and the slack that the solver found when it was last asked.
+    solved: f64,
     failures: usize,
     /// Margins' lower bounds at the plan's states, for refinement at the end.
     margins: Vec<Margin>,
@@ -55,6 +60,7 @@ impl StabilityCheck {
             center_O: claims.margin.center_O.into(),
             length: claims.margin.length,
             carried: None,
+            solved: 0.0,
             failures: 0,
             margins: Vec::new(),
         }
@@ -79,22 +85,14 @@ impl StabilityCheck {
         if self.failures >= MOST_FAILURES {
             return;
         }
-        // Contacts may spin in a transfer, and a spinning contact transmits no torsion.
-        let gamma = if leg.moving.is_some() { cone.gamma } else { 0.0 };
-        let holding = touches.iter().enumerate().filter(|&(finger, _)| leg.moving != Some(finger));
-        let contacts: Vec<Contact> = holding
-            .filter_map(|(_, touch)| *touch)
-            .map(|touch| Contact {
-                r: (touch.p_OC - self.center_O) / self.length,
-                n: -touch.n_O,
-                mu: cone.mu,
-                gamma: gamma / self.length,
-            })
-            .collect();
+        let contacts = self.contacts(leg, &cone, touches);
+        if leg.moving.is_some() && self.margins.last().is_some_and(|last| last.contacts == contacts) {
+            return; // The others rest: the grasp is the one just looked at.
+        }
         let place = || leg.between(state, sample as f64 / SAMPLES as f64);
         match self.prove(&contacts) {
             Ok(proof) => {
-                self.carried = Some(proof.forces);
+                self.carried = Some(proof);
                 self.gauge.note(proof.slack, place);
                 if sample.is_multiple_of(SAMPLES) {
                     let lower = force::margin(&contacts, &proof);
@@ -110,15 +108,37 @@ impl StabilityCheck {
         }
     }
 
-    /// A proof for the grasp from the carried force, else from the solver's; `Err` gives the slack that the solver could not bring above the
-    /// least one.
-    fn prove(&self, contacts: &[Contact]) -> Result<Proof, f64> {
-        if let Some(forces) = &self.carried
-            && let Some(proof) = force::prove(contacts, forces)
+    /// The contacts of the fingers that hold.
+    fn contacts(
+        &self,
+        leg: &Leg<'_>,
+        cone: &ConeClaim,
+        touches: &[Option<Touch>; MAX_FINGERS],
+    ) -> Vec<Contact> {
+        // Contacts may spin in a transfer, and a spinning contact transmits no torsion.
+        let gamma = if leg.moving.is_some() { cone.gamma } else { 0.0 };
+        let holding = touches.iter().enumerate().filter(|&(finger, _)| leg.moving != Some(finger));
+        let contact = |touch: Touch| Contact {
+            r: (touch.p_OC - self.center_O) / self.length,
+            n: -touch.n_O,
+            mu: cone.mu,
+            gamma: gamma / self.length,
+        };
+        holding.filter_map(|(_, touch)| touch.map(contact)).collect()
+    }
+
+    /// A proof for the grasp from the carried force, else (or where its slack has dwindled) from the solver's; `Err` gives the slack that the
+    /// solver could not bring above the least one.
+    fn prove(&mut self, contacts: &[Contact]) -> Result<Proof, f64> {
+        let carried = self.carried.as_ref().and_then(|carried| force::prove(contacts, &carried.forces));
+        if let Some(proof) = carried
+            && proof.slack > DWINDLED * self.solved
         {
             return Ok(proof);
         }
-        best(contacts)
+        let solved = best(contacts).or_else(|slack| carried.ok_or(slack))?;
+        self.solved = solved.slack;
+        Ok(solved)
     }
 
     /// The smallest margin, for the certificate: bounds that a carried force left loose are sharpened with the best one.
