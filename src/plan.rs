@@ -85,7 +85,7 @@ fn ending(run: &Run, summary: &report::Summary<'_>) -> Result<(), Failure> {
     if run.plan.is_some() && !run.is_verified() {
         return Err(Failure::not_verified(summary.why_not_verified()));
     }
-    match (run.outcome.status, summary.stopped_by()) {
+    match (run.outcome.status, run.stopped_by) {
         (Status::Solved, _) => Ok(()),
         (_, Some(StoppedBy::Interrupt)) => Err(Failure::interrupted(summary.why_no_plan())),
         _ => Err(Failure::no_plan(summary.why_no_plan())),

@@ -21,15 +21,6 @@ pub struct Summary<'a> {
 }
 
 impl Summary<'_> {
-    /// What ended the search before it was done.
-    pub fn stopped_by(&self) -> Option<StoppedBy> {
-        match self.run.outcome.status {
-            Status::Solved => None,
-            Status::NoPlan => Some(StoppedBy::MaxNodes),
-            Status::Interrupted => Some(self.options.stop.cause()),
-        }
-    }
-
     /// The one JSON object of `plan --json`.
     pub fn json(&self) -> Value {
         let (run, statistics) = (self.run, &self.run.outcome.statistics);
@@ -38,7 +29,7 @@ impl Summary<'_> {
             "scenario": self.scenario.name,
             "status": run.outcome.status,
             "verified": run.is_verified(),
-            "stopped_by": self.stopped_by(),
+            "stopped_by": run.stopped_by,
             "seed": self.options.seed,
             "threads": self.options.threads,
             "goals": self.scenario.problem.goal.len(),
@@ -162,13 +153,15 @@ impl Summary<'_> {
             Some(Stuck::Search(goal)) => format!("the search for goal {} found no way", goal + 1),
             None => format!("the search was stopped on the way to goal {}", outcome.goals_reached + 1),
         };
-        let stopped = match self.stopped_by() {
+        let stopped = match self.run.stopped_by {
             Some(StoppedBy::TimeLimit) => "no plan within the time limit",
+            Some(StoppedBy::MaxNodes) => "no plan within the budget of nodes",
             Some(StoppedBy::Interrupt) => "interrupted",
-            _ => "no plan within the budget of nodes",
+            None => "no plan",
         };
+        let kept = self.saved.map(|path| format!("; what was reached is kept as `{}`", path.display()));
         let rejections = rejections(&outcome.statistics);
-        format!("{stopped}: {stuck}\n{}{rejections}", self.advice())
+        format!("{stopped}: {stuck}{}\n{}{rejections}", kept.unwrap_or_default(), self.advice())
     }
 
     fn advice(&self) -> String {

@@ -94,7 +94,7 @@ fn the_readmes_scenario_works() {
     assert_eq!(said.code, 0, "{}", said.err);
 }
 
-/// A problem without a solution that is not given up soon: the ball is to go to the other side of a wall.
+/// A problem without a solution that is not given up soon: after an easy goal the ball is to go to the other side of a wall.
 fn endless(desk: &Desk) {
     let wall =
         "[[obstacle]]\nname = \"wall\"\nshape = { kind = \"box\", size = [0.6, 0.002, 0.6] }\n\n[start]";
@@ -102,6 +102,10 @@ fn endless(desk: &Desk) {
         ("pose = { position = [0.0, 0.0, 0.085] }", "pose = { position = [0.0, -0.036, 0.085] }"),
         ("pose = { position = [0.0, 0.0, 0.085], axis", "pose = { position = [0.0, 0.036, 0.085], axis"),
         ("[start]", wall),
+        (
+            "[[goal]]",
+            "[[goal]]\npose = { position = [0.0, -0.036, 0.085], axis = [0.0, 0.0, 1.0], angle_deg = 40.0 }\n\n[[goal]]",
+        ),
     ];
     desk.write("mine.toml", crate::desk::built_in("sphere-free", &changes));
 }
@@ -118,12 +122,13 @@ fn ctrl_c_ends_the_search_with_its_own_exit_code() {
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program was built for this test");
-    std::thread::sleep(Duration::from_millis(500));
+    std::thread::sleep(Duration::from_millis(1500));
     let signalled = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
     assert!(signalled.success());
     let said = Said::of(&child.wait_with_output().expect("the program ends"));
-    said.assert_fails(130, &["interrupted"]);
-    assert_eq!(desk.files(), ["mine.toml"]);
+    said.assert_fails(130, &["interrupted", "goal 2", "kept as `plan.partial.json`"]);
+    assert_eq!(desk.files(), ["mine.toml", "plan.partial.json"]);
+    assert!(desk.read("plan.partial.json").contains("\"stopped_by\": \"interrupt\""));
 }
 
 #[test]

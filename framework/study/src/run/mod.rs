@@ -9,7 +9,7 @@ use crate::scenario::Scenario;
 use regrasp_api::{Hand, Interrupt, Parts};
 use regrasp_host::{Choices, PluginSet, Registry};
 use regrasp_plan::{Plan, StoppedBy};
-use regrasp_planner::{Clock, Drivers, Outcome, Progress, Request};
+use regrasp_planner::{Clock, Drivers, Outcome, Progress, Request, Status, Stuck};
 use regrasp_verify::Verdict;
 use regrasp_world::SceneClearance;
 use std::path::Path;
@@ -55,6 +55,8 @@ pub struct RunOptions<'a> {
 pub struct Run {
     /// The planner's own answer.
     pub outcome: Outcome,
+    /// What stopped the search before its end; absent where it came to an end of its own, with a plan or without.
+    pub stopped_by: Option<StoppedBy>,
     /// The plan as its file holds it, certificate included; absent where no goal was reached.
     pub plan: Option<Plan>,
     /// The verifier's answer on the plan.
@@ -69,7 +71,7 @@ impl Run {
     /// Whether there is a plan and the verifier accepts it; a plan that reaches only some goals is judged by what it does.
     pub fn is_verified(&self) -> bool {
         self.verdict.as_ref().is_some_and(|verdict| match self.outcome.status {
-            regrasp_planner::Status::Solved => verdict.valid,
+            Status::Solved => verdict.valid,
             _ => verdict.is_sound(),
         })
     }
@@ -112,15 +114,23 @@ impl<'a> Setup<'a> {
         let begin = options.clock.seconds();
         let outcome = self.solve(options)?;
         let planned = options.clock.seconds();
+        let stopped_by = stopped_by(&outcome, options.stop);
         let (mut plan, mut verdict) = (None, None);
         if outcome.goals_reached > 0 {
-            let mut file = self.plan_file(&outcome, options)?;
+            let mut file = self.plan_file(&outcome, options.seed, stopped_by)?;
             let judged = regrasp_verify::verify(&file);
             file.certificate = judged.certificate.clone();
             (plan, verdict) = (Some(file), Some(judged));
         }
         let verified = options.clock.seconds();
-        Ok(Run { outcome, plan, verdict, planning_s: planned - begin, verification_s: verified - planned })
+        Ok(Run {
+            outcome,
+            stopped_by,
+            plan,
+            verdict,
+            planning_s: planned - begin,
+            verification_s: verified - planned,
+        })
     }
 
     fn solve(&self, options: &RunOptions<'_>) -> Result<Outcome, RunError> {
@@ -151,5 +161,13 @@ impl<'a> Setup<'a> {
 
     fn hand(&self) -> &dyn Hand {
         self.scenario.hand.as_ref()
+    }
+}
+
+fn stopped_by(outcome: &Outcome, stop: &dyn Stop) -> Option<StoppedBy> {
+    match (outcome.status, outcome.stuck) {
+        (Status::Interrupted, _) => Some(stop.cause()),
+        (Status::NoPlan, Some(Stuck::Search(_))) => Some(StoppedBy::MaxNodes),
+        _ => None,
     }
 }

@@ -1,28 +1,33 @@
 //! The plan file of an outcome.
 
-use super::{RunError, RunOptions, Setup};
+use super::{RunError, Setup};
 use regrasp_api::{Contact, GoalDescription, Pose, angle_between};
 use regrasp_plan::{
     Claims, ConeClaim, ContactClaim, Criterion, Format, MarginFrame, Motion, Plan, PluginChoice,
     ResolvedScenario, StoppedBy, TransferLaw, VERSION,
 };
-use regrasp_planner::{Outcome, Status};
+use regrasp_planner::Outcome;
 use serde_json::Value;
 
 /// How far the contact of a given grasp may lie from where the file says (m), as the scenario file allows.
 const GIVEN_CONTACT: f64 = 1e-3;
 
 impl Setup<'_> {
-    pub(super) fn plan_file(&self, outcome: &Outcome, options: &RunOptions<'_>) -> Result<Plan, RunError> {
+    pub(super) fn plan_file(
+        &self,
+        outcome: &Outcome,
+        seed: u64,
+        stopped_by: Option<StoppedBy>,
+    ) -> Result<Plan, RunError> {
         Ok(Plan {
             format: Format::RegraspPlan,
             version: VERSION,
             scenario: self.resolved_scenario(),
-            seed: options.seed,
+            seed,
             versions: [("regrasp".to_owned(), env!("CARGO_PKG_VERSION").to_owned())].into(),
             claims: self.claims(&outcome.motion),
             goals_reached: self.goal_marks(outcome),
-            stopped_by: stopped_by(outcome, options),
+            stopped_by,
             statistics: outcome.statistics.clone(),
             certificate: None,
             segments: regrasp_plan::records(&outcome.motion, self.hand())?,
@@ -93,12 +98,4 @@ fn holds_as_given(grasp: &[regrasp_api::FingerGrasp], q: &regrasp_api::Configura
         }
         (contact, given) => contact.is_none() && given.is_none(),
     })
-}
-
-fn stopped_by(outcome: &Outcome, options: &RunOptions<'_>) -> Option<StoppedBy> {
-    match outcome.status {
-        Status::Solved => None,
-        Status::NoPlan => Some(StoppedBy::MaxNodes),
-        Status::Interrupted => Some(options.stop.cause()),
-    }
 }
