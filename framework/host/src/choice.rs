@@ -1,7 +1,7 @@
 //! Which plugin fills each slot, with which settings.
 
 use crate::{HostError, Registry, check_schema, fill_defaults};
-use regrasp_api::Slot;
+use regrasp_api::{Entry, Slot, unless_fault};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -99,14 +99,19 @@ fn resolve_choice(registry: &Registry, slot: Slot, choice: &Choice) -> Result<Ch
     let entry = registry.lookup(slot, &choice.id)?;
     let id = entry.id.to_owned();
     let mut settings = choice.settings.clone();
-    // A schema that is not JSON cannot say more than the plugin's own check below.
-    let schema: Value = serde_json::from_str(&(entry.schema)()).unwrap_or_default();
+    let schema = settings_schema(entry)?;
     check_schema(&Value::Object(settings.clone()), &schema)
         .map_err(|departure| HostError::Form { id: id.clone(), departure })?;
     fill_defaults(&mut settings, &schema);
     (entry.check)(&settings_text(&settings))
         .map_err(|error| HostError::Settings { id: id.clone(), error })?;
     Ok(Choice { id, settings })
+}
+
+/// The JSON schema of a plugin's settings.
+pub fn settings_schema(entry: &Entry) -> Result<Value, HostError> {
+    // A schema that is not JSON cannot say more than the plugin's own check of its settings.
+    Ok(unless_fault(Ok(serde_json::from_str(&(entry.schema)()).unwrap_or_default()))?)
 }
 
 /// Settings as the JSON text that an entry's functions take.

@@ -1,7 +1,7 @@
 //! What can go wrong between a choice of plugins and the objects that they become.
 
-use crate::{Departure, did_you_mean};
-use regrasp_api::{BuildError, SettingsError, Slot};
+use crate::{Departure, LoadError, did_you_mean};
+use regrasp_api::{BuildError, CallError, SettingsError, Slot};
 use thiserror::Error;
 
 /// A plugin cannot be found, configured or built.
@@ -73,6 +73,12 @@ pub enum HostError {
         /// Its word.
         error: BuildError,
     },
+    /// A library of plugins is refused.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// A plugin panicked where it could not say so in its answer.
+    #[error(transparent)]
+    Call(#[from] CallError),
     /// The hand has too few fingers for the contact model.
     #[error(
         "the hand has {fingers} fingers, but under `{contact_model}` a grasp needs {fewest} contacts to be stable, so that {} fingers are \

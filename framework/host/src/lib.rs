@@ -1,10 +1,11 @@
 //! The plugin registry: which plugins there are, which of them a run chose, and the eight objects that they become.
 //!
 //! A plugin crate submits its [`Entry`](regrasp_api::Entry) with `inventory`; the registry collects what the binary links, sorts it by id
-//! and refuses duplicates. The default choice of each slot, the paper's, lives here: the planner names no plugin.
+//! and refuses duplicates. Further plugins come from libraries that are loaded at run time ([`load`]). The default choice of each slot, the paper's, lives here: the planner names no plugin.
 
 mod choice;
 mod error;
+mod load;
 mod near;
 mod plugin_set;
 mod registry;
@@ -14,6 +15,7 @@ mod test_plugins;
 
 pub use choice::*;
 pub use error::*;
+pub use load::*;
 pub use near::*;
 pub use plugin_set::*;
 pub use registry::*;

@@ -1,10 +1,10 @@
 //! The eight plugin objects of one run.
 
 use crate::choice::settings_text;
-use crate::{Choice, Choices, HostError, Registry};
+use crate::{Choice, Choices, HostError, Registry, Source};
 use regrasp_api::{
-    Build, BuildError, Built, ClosedChainSampler, ContactModel, GraphStrategy, LocalPlanner, Parts, Slot,
-    StabilityTest, SurfaceParam,
+    Build, BuildError, Built, ClosedChainSampler, ContactModel, GraphStrategy, Guardable, LocalPlanner,
+    Parts, Slot, StabilityTest, SurfaceParam, guarded, unless_fault,
 };
 
 /// A plugin object for each slot.
@@ -63,15 +63,20 @@ macro_rules! build_slot {
 }
 
 impl Builder<'_> {
-    fn build<T: ?Sized>(
+    fn build<T: Guardable + ?Sized>(
         &self,
         slot: Slot,
         make: impl Fn(Build, &str, &Parts<'_>) -> Built<T>,
     ) -> Result<Box<T>, HostError> {
         let Choice { id, settings } = self.choices.choice(slot);
         let entry = self.registry.lookup(slot, id)?;
-        make(entry.build, &settings_text(settings), self.parts)
-            .map_err(|error| HostError::Build { id: entry.id.to_owned(), error })
+        let make = || make(entry.build, &settings_text(settings), self.parts);
+        let built = match self.registry.source(entry) {
+            Source::BuiltIn => guarded(entry.id, make),
+            // A library brings its own guard.
+            Source::Library(_) => make(),
+        };
+        built.map_err(|error| HostError::Build { id: entry.id.to_owned(), error })
     }
 
     fn contact_model(&self) -> Result<Box<dyn ContactModel>, HostError> {
@@ -100,6 +105,7 @@ impl Builder<'_> {
 
     fn check_fingers(&self, contact_model: &dyn ContactModel) -> Result<(), HostError> {
         let (fingers, fewest) = (self.parts.hand.finger_count(), contact_model.fewest_contacts());
+        unless_fault(Ok(()))?;
         if fingers > fewest {
             return Ok(());
         }

@@ -1,11 +1,34 @@
 //! The plugins that this program has.
 
-use crate::{HostError, near};
+use crate::{HostError, LoadError, inspect, near, open};
 use regrasp_api::{Entry, Role, Slot, inventory};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Where a plugin comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source<'a> {
+    /// It is linked into the program.
+    BuiltIn,
+    /// It was loaded from this library.
+    Library(&'a Path),
+}
+
+impl fmt::Display for Source<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::BuiltIn => f.write_str("built-in"),
+            Self::Library(path) => write!(f, "{}", path.display()),
+        }
+    }
+}
 
 /// Every plugin of the program, sorted by id.
 pub struct Registry {
     entries: Vec<&'static Entry>,
+    /// The libraries of those plugins that were loaded, by id.
+    libraries: BTreeMap<String, PathBuf>,
 }
 
 impl Registry {
@@ -24,8 +47,46 @@ impl Registry {
         let misnamed = entries.iter().find(|entry| bare_name(entry).is_none());
         match misnamed {
             Some(entry) => Err(HostError::WrongRole { id: entry.id.to_owned(), role: entry.role().name() }),
-            None => Ok(Self { entries }),
+            None => Ok(Self { entries, libraries: BTreeMap::new() }),
         }
+    }
+
+    /// The same registry with the plugins of libraries added.
+    ///
+    /// All libraries are read first: if one of them does not fit this program, or has a plugin whose id is taken, none is loaded.
+    pub fn with_libraries<P: AsRef<Path>>(mut self, paths: &[P]) -> Result<Self, HostError> {
+        let inspected = paths.iter().map(|path| inspect(path.as_ref())).collect::<Result<Vec<_>, _>>()?;
+        for library in &inspected {
+            library.ids.iter().try_for_each(|id| self.reserve(id, &library.path))?;
+        }
+        let mut entries = self.entries;
+        for library in &inspected {
+            entries.extend(open(library)?);
+        }
+        Ok(Self { libraries: self.libraries, ..Self::new(entries)? })
+    }
+
+    /// Notes that the plugin `id` is to come from the library at `path`.
+    fn reserve(&mut self, id: &str, path: &Path) -> Result<(), LoadError> {
+        let first = match self.libraries.get(id) {
+            Some(library) => Source::Library(library),
+            None if self.entries.iter().any(|entry| entry.id == id) => Source::BuiltIn,
+            None => {
+                self.libraries.insert(id.to_owned(), path.to_owned());
+                return Ok(());
+            }
+        };
+        let source = |source: Source<'_>| match source {
+            Source::BuiltIn => "this program".to_owned(),
+            Source::Library(path) => format!("`{}`", path.display()),
+        };
+        let second = source(Source::Library(path));
+        Err(LoadError::Duplicate { id: id.to_owned(), first: source(first), second })
+    }
+
+    /// Where a plugin comes from.
+    pub fn source(&self, entry: &Entry) -> Source<'_> {
+        self.libraries.get(entry.id).map_or(Source::BuiltIn, |path| Source::Library(path))
     }
 
     /// The entries in ascending order of ids.
