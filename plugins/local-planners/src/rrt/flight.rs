@@ -29,10 +29,9 @@ impl<'a> Flight<'a> {
         X_HO.rotation * contact.tip_center(self.radius + height) + X_HO.translation.vector
     }
 
-    /// The distance (m) of the fingertip from the surface, with a contact nearby.
-    pub fn gap(&self, joints: &FingerJoints, near: &Contact) -> f64 {
+    /// The distance (m) of a fingertip from the surface, given its centre in H and a contact nearby.
+    pub fn gap(&self, p_HF: &Vec3, near: &Contact) -> f64 {
         let X_HO = &self.from.X_HO;
-        let p_HF = self.task.hand.tip_center(self.finger, joints);
         let p_OF = X_HO.rotation.inverse_transform_vector(&(p_HF - X_HO.translation.vector));
         self.task.surface.project(&p_OF, Some(near.facet)).distance - self.radius
     }

@@ -35,7 +35,8 @@ impl Flight<'_> {
             return false;
         }
         let steps = (height / self.task.resolution.regrasp_step).ceil().max(1.0) as usize;
-        let mut rung = Rung { joints: *joints, height: 0.0, gap: self.gap(joints, contact) };
+        let touching = self.task.hand.tip_center(self.finger, joints);
+        let mut rung = Rung { joints: *joints, height: 0.0, gap: self.gap(&touching, contact) };
         for step in 1..=steps {
             let to = height * step as f64 / steps as f64;
             match self.climb(contact, rung, to, HALVINGS, postures) {
@@ -55,8 +56,9 @@ impl Flight<'_> {
         halvings: usize,
         postures: &mut Vec<FingerJoints>,
     ) -> Option<Rung> {
-        let joints = self.task.hand.inverse(self.finger, &self.center(contact, to), &rung.joints)?;
-        let next = Rung { joints, height: to, gap: self.gap(&joints, contact) };
+        let p_HF = self.center(contact, to);
+        let joints = self.task.hand.inverse(self.finger, &p_HF, &rung.joints)?;
+        let next = Rung { joints, height: to, gap: self.gap(&p_HF, contact) };
         if next.gap <= rung.gap {
             return None;
         }
@@ -78,7 +80,8 @@ impl Flight<'_> {
     /// The gap differs from a straight line by a parabola, to leading order: it rises throughout as long as the parabola's height is
     /// less than a quarter of the difference.
     fn rises(&self, contact: &Contact, a: &Rung, b: &Rung) -> bool {
-        let bow = self.gap(&a.joints.interpolate(&b.joints, 0.5), contact) - 0.5 * (a.gap + b.gap);
+        let middle = self.task.hand.tip_center(self.finger, &a.joints.interpolate(&b.joints, 0.5));
+        let bow = self.gap(&middle, contact) - 0.5 * (a.gap + b.gap);
         bow.abs() < 0.2 * (b.gap - a.gap)
             && self.travel(&a.joints, &b.joints) <= largest_travel(self.task.resolution)
     }

@@ -108,22 +108,10 @@ impl Rrt {
         let Some(high) = leave(flight, ends.1, &mut scratch.descent) else {
             return Ok(Some(Reason::Retreat));
         };
-        let (a, b) = (
-            *scratch.postures.last().unwrap_or(ends.0.joints),
-            *scratch.descent.last().unwrap_or(ends.1.joints),
-        );
+        let a = *scratch.postures.last().unwrap_or(ends.0.joints);
+        let b = *scratch.descent.last().unwrap_or(ends.1.joints);
         let lifted = scratch.postures.len();
-        let direct = match (ends.0.contact, ends.1.contact) {
-            (Some(from), Some(to)) => {
-                let Scratch { slide, lengths, postures, .. } = scratch;
-                match flight.task.surface.geodesic(from, to, slide, context)? {
-                    true => flight.follow(slide, lengths, (low, high), (&a, &b), postures),
-                    false => Err(Reason::Surface),
-                }
-            }
-            _ => flight.straight(&a, &b, &mut scratch.postures),
-        };
-        if let Err(reason) = direct {
+        if let Err(reason) = direct(flight, ends, (low, high), (&a, &b), scratch, context)? {
             scratch.postures.truncate(lifted);
             if !tree::search(flight, &self.settings, (&a, &b), scratch, context)? {
                 return Ok(Some(reason));
@@ -137,6 +125,26 @@ impl Rrt {
         }
         Ok(None)
     }
+}
+
+/// Appends the direct way from the lifted posture `a` to `b`: along the geodesic between two contacts, otherwise straight; or says what
+/// bars it.
+fn direct(
+    flight: &Flight<'_>,
+    ends: (End<'_>, End<'_>),
+    heights: (f64, f64),
+    (a, b): (&FingerJoints, &FingerJoints),
+    scratch: &mut Scratch,
+    context: &mut Context<'_>,
+) -> Result<Result<(), Reason>, CallError> {
+    let Scratch { slide, lengths, postures, .. } = scratch;
+    let (Some(from), Some(to)) = (ends.0.contact, ends.1.contact) else {
+        return Ok(flight.straight(a, b, postures));
+    };
+    if !flight.task.surface.geodesic(from, to, slide, context)? {
+        return Ok(Err(Reason::Surface));
+    }
+    Ok(flight.follow(slide, lengths, heights, (a, b), postures))
 }
 
 /// Lifts the finger off the object where it touches: the greatest height of the task's that it reaches, 0 where it is free.
