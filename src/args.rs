@@ -44,6 +44,8 @@ pub struct PlanArgs {
     /// Change a setting of the plugin in a slot; the value is TOML; can be repeated.
     #[arg(long = "set", value_name = "SLOT.KEY=VALUE")]
     pub sets: Vec<String>,
+    #[command(flatten)]
+    pub libraries: LibraryArgs,
     /// Stop after this many seconds.
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub time_limit: Option<f64>,
@@ -62,6 +64,14 @@ pub struct PlanArgs {
     /// Print how often each plugin said no, by cause.
     #[arg(short = 'v', long)]
     pub rejections: bool,
+}
+
+/// Libraries of plugins to load.
+#[derive(Debug, Args)]
+pub struct LibraryArgs {
+    /// Load the plugins of this library, which `regrasp new-plugin` shows how to build; can be repeated.
+    #[arg(long, value_name = "LIBRARY")]
+    pub load: Vec<PathBuf>,
 }
 
 /// Check a plan file with the independent verifier.
@@ -84,6 +94,8 @@ pub struct PluginsArgs {
     /// A role, to list its plugins; or a plugin's id, to show its settings.
     #[arg(value_name = "ROLE|ID")]
     pub what: Option<String>,
+    #[command(flatten)]
+    pub libraries: LibraryArgs,
     /// Print a JSON list instead of text.
     #[arg(long)]
     pub json: bool,

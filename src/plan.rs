@@ -3,15 +3,14 @@
 use crate::args::PlanArgs;
 use crate::progress::Line;
 use crate::watch::Watch;
-use crate::{Failure, overrides, report, say, say_json};
-use regrasp::host::Registry;
+use crate::{Failure, overrides, plugins, report, say, say_json};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
 use regrasp::study::{Run, RunOptions, Setup, scenario};
 use std::path::{Path, PathBuf};
 
 pub fn run(args: &PlanArgs) -> Result<(), Failure> {
-    let registry = Registry::linked().map_err(Failure::bad_input)?;
+    let registry = plugins::registry(&args.libraries)?;
     let mut scenario = scenario::load(&args.scenario, &registry).map_err(Failure::bad_input)?;
     overrides::apply(&mut scenario, args)?;
     check_output(args.output.as_deref())?;

@@ -111,6 +111,15 @@ impl<'a> Setup<'a> {
 
     /// Plans and verifies.
     pub fn run(&self, options: &RunOptions<'_>) -> Result<Run, RunError> {
+        let run = self.plan_and_verify(options);
+        // A plugin that panicked outside the planner's own calls, say while cones were written down, spoils the whole.
+        match regrasp_api::take_fault() {
+            Some(fault) => Err(RunError::Call(fault)),
+            None => run,
+        }
+    }
+
+    fn plan_and_verify(&self, options: &RunOptions<'_>) -> Result<Run, RunError> {
         let begin = options.clock.seconds();
         let outcome = self.solve(options)?;
         let planned = options.clock.seconds();
