@@ -1,7 +1,7 @@
 //! The plan file: format, reading, writing, timing.
 //!
 //! A [`Motion`] is what the planner makes; [`assign_times`] times it; [`records`] turns it into the segments of a [`Plan`], which
-//! [`write`] puts into a file and [`read`] gets back, every number exactly as it was.
+//! [`write()`] puts into a file and [`read`] gets back, every number exactly as it was.
 
 mod certificate;
 mod claims;
