@@ -89,7 +89,7 @@ fn defaults(subject: &Subject<'_>) -> Finding {
 }
 
 fn unknown_key(subject: &Subject<'_>) -> Finding {
-    for text in [r#"{"no_such_key": 1}"#, "{", "[1]", "7"] {
+    for text in [r#"{"no_such_key": 1}"#, "{", "7"] {
         ensure((subject.entry.check)(text).is_err(), || format!("accepts {text}"))?;
     }
     Ok(())

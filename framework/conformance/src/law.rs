@@ -1,14 +1,18 @@
 //! Laws, and how they are tried: panics caught, calls repeated in other orders and on other threads.
 
 use crate::report::{Check, Fault, Finding, ensure};
-use regrasp_api::{Context, Entry, Interrupt, Random, Uninterrupted};
+use crate::roles::Journey;
+use regrasp_api::{Context, Entry, Interrupt, Random, Slot, Uninterrupted};
 use std::fmt::Debug;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::rc::Rc;
 
 /// What a law is tried on: an entry, and what is demanded of it.
 pub(crate) struct Subject<'a> {
     pub entry: &'a Entry,
     pub demands: &'a crate::Demands,
+    /// What the plugin did as a local planner: made once, looked at by many laws.
+    pub journeys: std::cell::RefCell<Vec<(Slot, Rc<Vec<Journey>>)>>,
 }
 
 /// One law of a role, with the check that tries it.

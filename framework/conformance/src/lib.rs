@@ -50,7 +50,7 @@ pub fn check(entry: &Entry) -> Report {
 
 /// Puts a plugin through every check of its entry and of its role.
 pub fn check_with(entry: &Entry, demands: &Demands) -> Report {
-    let subject = Subject { entry, demands };
+    let subject = Subject { entry, demands, journeys: Default::default() };
     let groups = laws_of(entry);
     let checks = groups.into_iter().flat_map(|laws| try_laws(laws, &subject)).collect();
     Report { plugin: entry.id.into(), checks }

@@ -2,8 +2,25 @@
 //!
 //! They stand in for the other roles while one is tested, and they are the honest part of the kit's own liars.
 
+mod admissible;
 mod closure;
+mod fine_rolling;
+mod geometry;
+mod graph_path;
+mod grasp_line;
+mod lift_over;
 mod nonnegative;
+mod sampler;
+mod steps;
+mod surface;
+mod walk;
 
+pub use admissible::{Leavable, RoundCones};
 pub(crate) use closure::center_and_length;
 pub use closure::{Closure, EdgeClosure, closure};
+pub use fine_rolling::FineRolling;
+pub use geometry::{Closest, closest_on_facet, closest_on_mesh, closest_on_primitive, closest_on_segment};
+pub use grasp_line::GraspLine;
+pub use lift_over::LiftOver;
+pub use sampler::RejectionSampler;
+pub use surface::FacetSurface;

@@ -1,0 +1,60 @@
+//! The contact model and the node predicate of the kit's tasks.
+
+use regrasp_api::{
+    Admissible, CallError, Cone, Configuration, Contact, ContactModel, Context, FingerIndex, FingerSet, Hint,
+    Reason, Task, TipRule,
+};
+
+/// Point contacts with Coulomb friction.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RoundCones;
+
+impl ContactModel for RoundCones {
+    fn cone(&self, _contact: &Contact, mu: f64) -> Cone<'_> {
+        Cone::Elliptic { mu, gamma: 0.0 }
+    }
+
+    fn fewest_contacts(&self) -> usize {
+        3
+    }
+}
+
+/// Admits stable grasps without collision, whose contacts keep away from sharp edges.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Leavable;
+
+impl Admissible for Leavable {
+    fn admit_finger(
+        &self,
+        task: &Task<'_>,
+        q: &Configuration,
+        finger: FingerIndex,
+        placed: FingerSet,
+        _context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError> {
+        let tip = match &q.contacts[finger] {
+            Some(contact) if task.surface.edge_distance(contact) < task.resolution.edge_margin => {
+                return Ok(Some(Reason::Edge));
+            }
+            Some(_) => TipRule::Touches,
+            None => TipRule::Clear(task.resolution.clearance),
+        };
+        let joints = &q.joints[finger];
+        let alone = task.clearance.finger_free(finger, joints, &q.X_HO, tip).is_ok();
+        let beside = |other: FingerIndex| {
+            task.clearance.fingers_free((finger, joints), (other, &q.joints[other])).is_ok()
+        };
+        Ok(if alone && placed.iter().all(beside) { None } else { Some(Reason::Collision) })
+    }
+
+    fn admit_grasp(
+        &self,
+        task: &Task<'_>,
+        q: &Configuration,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError> {
+        let grasp = task.grasp(q, q.holding());
+        let stable = task.stability.test(&grasp, &mut Hint::default(), context)?.is_stable();
+        Ok(if stable { None } else { Some(Reason::Stability) })
+    }
+}

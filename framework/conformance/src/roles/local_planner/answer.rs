@@ -1,0 +1,157 @@
+//! Laws of a local planner's answer.
+
+use super::case::{Goal, cases};
+use super::{Kind, build, journeys};
+use crate::law::{Always, Subject, context, pure, random};
+use crate::report::{Fault, Finding, ensure};
+use regrasp_api::{
+    BodyPair, CallError, Clearance, Configuration, Context, FingerIndex, FingerJoints, FingerSet,
+    PairDistance, Path, Pose, Reason, Slot, Task, TipRule,
+};
+
+pub(super) fn ends<K: Kind>(subject: &Subject<'_>) -> Finding {
+    for journey in journeys::<K>(subject)?.iter() {
+        let states = &journey.path.states;
+        ensure(states.first() == Some(&journey.case.from), || {
+            format!("the first of {} states is not where it began", states.len())
+        })?;
+        ensure(states.last() == Some(&journey.reached.end), || {
+            format!("the last of {} states is not the end that it returns", states.len())
+        })?;
+    }
+    Ok(())
+}
+
+pub(super) fn reached<K: Kind>(subject: &Subject<'_>) -> Finding {
+    for journey in journeys::<K>(subject)?.iter() {
+        let (fraction, stop) = (journey.reached.fraction, journey.reached.stop);
+        let fits = (0.0..=1.0).contains(&fraction) && (fraction == 1.0) == stop.is_none();
+        ensure(fits, || format!("fraction {fraction} with {stop:?}"))?;
+    }
+    Ok(())
+}
+
+pub(super) fn target<K: Kind>(subject: &Subject<'_>) -> Finding {
+    for journey in journeys::<K>(subject)?.iter().filter(|journey| journey.reached.stop.is_none()) {
+        let end = &journey.reached.end;
+        let there = match &journey.case.goal {
+            Goal::Grasp(q) => end == q,
+            Goal::Transfer(X_HO) => end.X_HO == *X_HO,
+            Goal::Regrasp { finger, contact, joints } => {
+                end.joints[*finger] == *joints && end.contacts[*finger] == *contact
+            }
+        };
+        ensure(there, || format!("claims {:?}, ends at {end:?}", journey.case.goal))?;
+    }
+    Ok(())
+}
+
+pub(super) fn path_optional<K: Kind>(subject: &Subject<'_>) -> Finding {
+    for (key, journey) in journeys::<K>(subject)?.iter().enumerate() {
+        let case = journey.case;
+        // The random stream is that of the journey: cases that the plugin refuses to be built for have none.
+        let index = cases(K::SLOT).iter().position(|other| std::ptr::eq(other, case)).unwrap_or(key);
+        let mut context = context(index as u64);
+        let (task, target) = (case.bench.task(), case.goal.target());
+        let bare = build(subject, case)?.connect(&task, &case.from, &target, None, &mut context)?;
+        ensure(bare == journey.reached, || {
+            format!("without a path {bare:?}, with one {:?}", journey.reached)
+        })?;
+    }
+    Ok(())
+}
+
+pub(super) fn succeeds<K: Kind>(subject: &Subject<'_>) -> Finding {
+    let journeys = journeys::<K>(subject)?;
+    let easy: Vec<_> = journeys.iter().filter(|journey| journey.case.easy).collect();
+    let stops: Vec<_> = easy.iter().filter_map(|journey| journey.reached.stop).collect();
+    ensure(2 * stops.len() <= easy.len(), || {
+        format!("of {} short motions {} fail: {stops:?}", easy.len(), stops.len())
+    })
+}
+
+/// Everything is in the way.
+struct Crowded;
+
+const PAIR: BodyPair = (regrasp_api::Body::Palm, regrasp_api::Body::Object);
+
+impl Clearance for Crowded {
+    fn object_free(&self, _: &Pose) -> Result<(), BodyPair> {
+        Err(PAIR)
+    }
+    fn finger_free(&self, _: FingerIndex, _: &FingerJoints, _: &Pose, _: TipRule) -> Result<(), BodyPair> {
+        Err(PAIR)
+    }
+    fn fingers_free(
+        &self,
+        _: (FingerIndex, &FingerJoints),
+        _: (FingerIndex, &FingerJoints),
+    ) -> Result<(), BodyPair> {
+        Err(PAIR)
+    }
+    fn configuration_free(&self, _: &Configuration, _: FingerSet, _: bool) -> Result<(), BodyPair> {
+        Err(PAIR)
+    }
+    fn distances(&self, _: &Configuration, _: f64) -> Vec<PairDistance> {
+        vec![PairDistance { pair: PAIR, distance: 0.0 }]
+    }
+}
+
+pub(super) fn reasons<K: Kind>(subject: &Subject<'_>) -> Finding {
+    for case in cases(K::SLOT).iter().filter(|case| !case.easy) {
+        let planner = match build(subject, case) {
+            Err(Fault::Skip(_)) => continue,
+            built => built?,
+        };
+        let task = Task { clearance: &Crowded, ..case.bench.task() };
+        for path in [None, Some(&mut Path::default())] {
+            let mut context = context(0);
+            let reached = planner.connect(&task, &case.from, &case.goal.target(), path, &mut context)?;
+            let Some(reason) = reached.stop else { continue };
+            let counted: u64 = Reason::ALL.iter().map(|&r| context.tally.rejections(K::SLOT, r)).sum();
+            ensure(context.tally.rejections(K::SLOT, reason) == 1 && counted == 1, || {
+                format!("one refusal for {reason:?}, {counted} counted in its slot")
+            })?;
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn wrong_target<K: Kind>(subject: &Subject<'_>) -> Finding {
+    for slot in [Slot::GraspPlanner, Slot::TransferPlanner, Slot::RegraspPlanner] {
+        if subject.entry.slots.contains(&slot) {
+            continue;
+        }
+        let case = &cases(slot)[0];
+        let (planner, task) = (build(subject, case)?, case.bench.task());
+        let found = planner.connect(&task, &case.from, &case.goal.target(), None, &mut context(0));
+        let refused = matches!(found, Err(CallError::Unsupported { .. }));
+        ensure(refused, || format!("a target of `{}` is answered with {found:?}", slot.name()))?;
+    }
+    Ok(())
+}
+
+pub(super) fn interrupt<K: Kind>(subject: &Subject<'_>) -> Finding {
+    for journey in journeys::<K>(subject)?.iter().filter(|journey| journey.path.states.len() > 40) {
+        let case = journey.case;
+        let mut context = Context::new(random(0), &Always);
+        let (task, target) = (case.bench.task(), case.goal.target());
+        let found = build(subject, case)?.connect(&task, &case.from, &target, None, &mut context);
+        ensure(matches!(found, Err(CallError::Interrupted)), || {
+            format!("goes on, over {} states: {found:?}", journey.path.states.len())
+        })?;
+    }
+    Ok(())
+}
+
+pub(super) fn planner_pure<K: Kind>(subject: &Subject<'_>) -> Finding {
+    let journeys = journeys::<K>(subject)?;
+    let cases: Vec<_> = journeys.iter().map(|journey| journey.case).take(6).collect();
+    let planners: Vec<_> = cases.iter().map(|case| build(subject, case)).collect::<Finding<_>>()?;
+    pure(cases.len(), |i| {
+        let (mut path, mut context) = (Path::default(), context(i as u64));
+        let (task, target) = (cases[i].bench.task(), cases[i].goal.target());
+        let reached = planners[i].connect(&task, &cases[i].from, &target, Some(&mut path), &mut context)?;
+        Ok((reached, path, context.tally))
+    })
+}

@@ -1,0 +1,234 @@
+//! Problems for local planners: starts and targets.
+
+use crate::fixtures::{Bench, to_hand};
+use crate::law::{context, random};
+use crate::reference::{Closure, RejectionSampler, closure};
+use regrasp_api::{
+    ClosedChainSampler, Configuration, Contact, FingerIndex, FingerJoints, FingerSet, Hand, PerFinger, Pose,
+    PoseRequest, Random, Rotation, Slot, SurfaceParam, Target, TipRule, Vec3,
+};
+use std::sync::OnceLock;
+
+/// A target that owns its data.
+#[derive(Clone, Debug)]
+pub(crate) enum Goal {
+    Grasp(Configuration),
+    Transfer(Pose),
+    Regrasp { finger: FingerIndex, contact: Option<Contact>, joints: FingerJoints },
+}
+
+impl Goal {
+    pub fn target(&self) -> Target<'_> {
+        match self {
+            Self::Grasp(q) => Target::Grasp(q),
+            Self::Transfer(X_HO) => Target::Transfer(X_HO),
+            Self::Regrasp { finger, contact, joints } => {
+                Target::Regrasp { finger: *finger, contact: contact.as_ref(), joints }
+            }
+        }
+    }
+}
+
+/// One problem.
+pub(crate) struct Case {
+    pub bench: &'static Bench,
+    pub from: Configuration,
+    pub goal: Goal,
+    /// A short way with nothing in it: most of these are to be solved.
+    pub easy: bool,
+}
+
+/// The problems of a slot, made once.
+pub(crate) fn cases(slot: Slot) -> &'static [Case] {
+    static GRASP: OnceLock<Vec<Case>> = OnceLock::new();
+    static TRANSFER: OnceLock<Vec<Case>> = OnceLock::new();
+    static REGRASP: OnceLock<Vec<Case>> = OnceLock::new();
+    match slot {
+        Slot::GraspPlanner => GRASP.get_or_init(grasps),
+        Slot::TransferPlanner => TRANSFER.get_or_init(transfers),
+        _ => REGRASP.get_or_init(regrasps),
+    }
+}
+
+fn benches() -> [&'static Bench; 4] {
+    [Bench::free_sphere(), Bench::hand_sphere(), Bench::hand_ellipsoid(), Bench::free_cube()]
+}
+
+/// A configuration with all fingers in contact, by the reference sampler.
+fn somewhere(bench: &Bench, key: u64) -> Configuration {
+    let pose = PoseRequest::At(Bench::center());
+    let found = RejectionSampler.sample(&bench.task(), pose, FingerSet::first(4), &mut context(key));
+    found.expect("nothing interrupts").expect("the kit's hands hold the kit's objects")
+}
+
+/// The joints of a hand whose fingertips stand on the contacts; `None` if one cannot.
+fn closed(bench: &Bench, X_HO: Pose, contacts: &PerFinger<Option<Contact>>) -> Option<Configuration> {
+    let hand = &*bench.world.hand;
+    let rest = PerFinger::from_fn(hand.finger_count(), |finger| hand.finger(finger).rest);
+    let near = Configuration { X_HO, joints: rest, contacts: *contacts };
+    RejectionSampler
+        .close(&bench.task(), &X_HO, contacts, &near, &mut context(0))
+        .expect("nothing interrupts")
+}
+
+fn turned(X_HO: &Pose, shift: Vec3, turn: Vec3) -> Pose {
+    let p = X_HO.translation.vector + shift;
+    Pose::from_parts(p.into(), Rotation::from_scaled_axis(turn) * X_HO.rotation)
+}
+
+fn transfers() -> Vec<Case> {
+    let mut random = random(81);
+    let mut cases = Vec::new();
+    let mut add = |bench, from: Configuration, shift: Vec3, turn: Vec3, easy| {
+        let goal = Goal::Transfer(turned(&from.X_HO, shift, turn));
+        cases.push(Case { bench, from, goal, easy });
+    };
+    for (key, bench) in benches().into_iter().enumerate() {
+        add(bench, somewhere(bench, key as u64), random.direction() * 1e-3, random.direction() * 0.03, true);
+    }
+    let (free, hand) = (Bench::free_sphere(), Bench::hand_sphere());
+    add(free, somewhere(free, 11), random.direction() * 5e-3, random.direction() * 0.4, false);
+    add(hand, somewhere(hand, 12), random.direction() * 5e-3, random.direction() * 0.4, false);
+    // Up until a joint's limit stops it, sideways into a wall, and from a grasp that holds nothing.
+    add(free, ring(free), Vec3::new(0.0, 0.0, 0.09), Vec3::zeros(), false);
+    add(
+        Bench::walled_sphere(),
+        ring(Bench::walled_sphere()),
+        Vec3::new(0.02, 0.0, 0.0),
+        Vec3::zeros(),
+        false,
+    );
+    add(free, slack(free), Vec3::new(0.0, 2e-3, 1e-3), Vec3::zeros(), false);
+    cases
+}
+
+/// Free fingertips on a ball in these directions.
+fn on_ball(bench: &Bench, directions: [[f64; 3]; 4]) -> Configuration {
+    let contact = |finger: FingerIndex| {
+        let u = Vec3::from(directions[finger.index()]).normalize();
+        Some(bench.surface.project(&(u * 0.05), None).contact)
+    };
+    let contacts = PerFinger::from_fn(4, contact);
+    closed(bench, Bench::center(), &contacts).expect("each direction is within the finger's box")
+}
+
+/// Fingertips before, beside and behind the ball, one a little below.
+fn ring(bench: &Bench) -> Configuration {
+    on_ball(bench, [[1.0, 0.1, -0.2], [0.0, 1.0, 0.1], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]])
+}
+
+/// Fingertips that push the ball up, all of them.
+fn slack(bench: &Bench) -> Configuration {
+    let q = on_ball(bench, [[1.0, 0.0, -1.2], [0.0, 1.0, -1.2], [-1.0, 0.0, -1.2], [0.0, -1.0, -1.2]]);
+    assert_eq!(closure(&bench.task().grasp(&q, q.holding())), Closure::Open, "it holds nothing");
+    q
+}
+
+/// A configuration near another: the pose moved, every contact slid.
+fn slid(bench: &Bench, from: &Configuration, shift: f64, slide: f64, random: &mut Random) -> Configuration {
+    let X_HO = turned(&from.X_HO, random.direction() * shift, random.direction() * (10.0 * shift));
+    let mut contacts = from.contacts;
+    for finger in from.holding().iter() {
+        let moved = from.contacts[finger].map(|c| bench.surface.walk(&c, &random.direction(), slide));
+        contacts[finger] = moved;
+    }
+    let near = |q: &Configuration| q.clone();
+    closed(bench, X_HO, &contacts).unwrap_or_else(|| near(from))
+}
+
+fn grasps() -> Vec<Case> {
+    let mut random = random(82);
+    let mut cases = Vec::new();
+    for (key, bench) in benches().into_iter().enumerate() {
+        let from = somewhere(bench, 20 + key as u64);
+        let to = slid(bench, &from, 1e-3, 2e-3, &mut random);
+        cases.push(Case { bench, from, goal: Goal::Grasp(to), easy: true });
+    }
+    // Far apart: limits, other fingers or loss of the grasp may be in the way.
+    for key in 0..4 {
+        let bench = [Bench::free_sphere(), Bench::hand_sphere()][key % 2];
+        let (from, to) = (somewhere(bench, 30 + key as u64), somewhere(bench, 40 + key as u64));
+        cases.push(Case { bench, from, goal: Goal::Grasp(to), easy: false });
+    }
+    let free = Bench::free_sphere();
+    // Around the back of the finger's box, into another finger, and from a grasp that holds nothing.
+    let [behind, other, _] = around(-1.0);
+    cases.push(Case {
+        bench: free,
+        from: on_ball(free, behind),
+        goal: Goal::Grasp(on_ball(free, other)),
+        easy: false,
+    });
+    let mut low = ring(free);
+    low.X_HO.translation.vector.z -= 0.0;
+    let across = on_ball(free, [[1.0, 0.1, -0.2], [0.75, 0.65, 0.1], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]);
+    let through = on_ball(free, [[0.6, 0.8, -0.1], [1.0, -0.1, 0.1], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]);
+    cases.push(Case { bench: free, from: across, goal: Goal::Grasp(through), easy: false });
+    let (from, shift) = (slack(free), Vec3::new(0.0, 4e-3, 4e-3));
+    let to = closed(free, turned(&from.X_HO, shift, Vec3::zeros()), &from.contacts).expect("it is near");
+    cases.push(Case { bench: free, from, goal: Goal::Grasp(to), easy: false });
+    cases
+}
+
+/// Directions of fingertips such that finger 0 passes `side` = ±1 along x on its shortest way from the first set to the second.
+///
+/// Three fingers hold the ball in the plane of x and z; the third set is where finger 0 ends up.
+fn around(side: f64) -> [[[f64; 3]; 4]; 3] {
+    let (near, far) = ([side * 0.45, 0.89, 0.0], [side * 0.45, -0.89, 0.0]);
+    // Behind is the only side on which finger 2 can stand for both.
+    let holders = if side < 0.0 {
+        [[1.0, 0.0, 0.0], [-0.5, 0.0, 0.87], [-0.5, 0.0, -0.87]]
+    } else {
+        [[0.5, 0.0, 0.87], [-1.0, 0.0, 0.0], [0.5, 0.0, -0.87]]
+    };
+    let with = |first: [f64; 3]| [first, holders[0], holders[1], holders[2]];
+    [with(near), with(far), with(far)]
+}
+
+/// The regrasp of `finger` that leads to the configuration `to`.
+fn regrasp(bench: &'static Bench, from: Configuration, to: &Configuration, finger: u8, easy: bool) -> Case {
+    let finger = FingerIndex(finger);
+    let goal = Goal::Regrasp { finger, contact: to.contacts[finger], joints: to.joints[finger] };
+    Case { bench, from, goal, easy }
+}
+
+fn regrasps() -> Vec<Case> {
+    let mut random = random(83);
+    let mut cases = Vec::new();
+    for (key, bench) in benches().into_iter().enumerate() {
+        cases.extend((0..20).find_map(|i| short_regrasp(bench, 50 + 20 * key as u64 + i, &mut random)));
+    }
+    let (free, walled) = (Bench::free_sphere(), Bench::walled_sphere());
+    let [from, to, _] = around(-1.0).map(|directions| on_ball(free, directions));
+    cases.push(regrasp(free, from.clone(), &to, 0, false));
+    // To rest and back.
+    let mut resting = from.clone();
+    resting.contacts[FingerIndex(0)] = None;
+    resting.joints[FingerIndex(0)] = free.world.hand.finger(FingerIndex(0)).rest;
+    cases.push(regrasp(free, from.clone(), &resting, 0, false));
+    cases.push(regrasp(free, resting, &to, 0, false));
+    // Between ball and wall, and with a finger that the grasp needs.
+    let [from, to, _] = around(1.0).map(|directions| on_ball(walled, directions));
+    cases.push(regrasp(walled, from, &to, 0, false));
+    let from = slack(free);
+    let to = slid(free, &from, 0.0, 6e-3, &mut random);
+    cases.push(regrasp(free, from, &to, 1, false));
+    cases
+}
+
+/// One finger to a contact 6 mm from its own, the others holding, the end free of collision; `None` if this key gives none.
+fn short_regrasp(bench: &'static Bench, key: u64, random: &mut Random) -> Option<Case> {
+    let from = somewhere(bench, key);
+    let task = bench.task();
+    let finger = (0..4)
+        .map(FingerIndex)
+        .find(|&finger| closure(&task.grasp(&from, from.holding().without(finger))) == Closure::Closed)?;
+    let contact = bench.surface.walk(from.contacts[finger].as_ref()?, &random.direction(), 6e-3);
+    let p_HF = to_hand(&from.X_HO, &contact.tip_center(bench.radius()));
+    let joints = task.hand.inverse(finger, &p_HF, &from.joints[finger])?;
+    let mut to = from.clone();
+    (to.contacts[finger], to.joints[finger]) = (Some(contact), joints);
+    let fits = task.clearance.finger_free(finger, &joints, &from.X_HO, TipRule::Touches).is_ok()
+        && task.clearance.configuration_free(&to, FingerSet::only(finger), false).is_ok();
+    fits.then(|| regrasp(bench, from, &to, finger.0, true))
+}

@@ -1,0 +1,80 @@
+//! Laws of one slot alone.
+
+use super::case::Goal;
+use super::inspect::{Touch, instants};
+use super::{Kind, Regrasp, Transfer, journeys};
+use crate::law::Subject;
+use crate::report::{Finding, ensure};
+use regrasp_api::Vec3;
+
+pub(super) fn same_fingers<K: Kind>(subject: &Subject<'_>) -> Finding {
+    for journey in journeys::<K>(subject)?.iter() {
+        let holding = journey.case.from.holding();
+        let other = journey.path.states.iter().position(|q| q.holding() != holding);
+        ensure(other.is_none(), || format!("other fingers hold in state {other:?}"))?;
+    }
+    Ok(())
+}
+
+/// Slip adds up, as vectors in the object's frame, from the start to any instant.
+pub(super) fn no_slip(subject: &Subject<'_>) -> Finding {
+    for journey in journeys::<Transfer>(subject)?.iter() {
+        let bench = journey.case.bench;
+        for finger in journey.case.from.holding().iter() {
+            let (mut before, mut net): (Option<Touch>, Vec3) = (None, Vec3::zeros());
+            for (at, q) in instants(&journey.path) {
+                let now = Touch::new(bench, &q, finger);
+                if let Some(before) = &before {
+                    // Half of each way of taking the contact: exact to second order.
+                    net += 0.5 * (before.slip(&now) - now.slip(before));
+                }
+                let slip = net.norm();
+                ensure(slip <= 0.5 * bench.tolerances.slip * 1.05, || {
+                    let states = journey.path.states.len();
+                    format!("fingertip {} has slipped {slip:e} m at {at} of {states} states", finger.0)
+                })?;
+                before = Some(now);
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn others_rest(subject: &Subject<'_>) -> Finding {
+    for journey in journeys::<Regrasp>(subject)?.iter() {
+        let (from, Goal::Regrasp { finger, .. }) = (&journey.case.from, &journey.case.goal) else { continue };
+        for (i, q) in journey.path.states.iter().enumerate() {
+            let mut rest = q.clone();
+            rest.joints[*finger] = from.joints[*finger];
+            rest.contacts[*finger] = from.contacts[*finger];
+            ensure(rest == *from, || format!("more than finger {} moves in state {i}", finger.0))?;
+        }
+    }
+    Ok(())
+}
+
+/// How far (m) the fingertip must have left the object half-way from contact to contact.
+const LIFTED: f64 = 1e-3;
+
+pub(super) fn touches_at_ends(subject: &Subject<'_>) -> Finding {
+    for journey in journeys::<Regrasp>(subject)?.iter() {
+        let Goal::Regrasp { finger, .. } = &journey.case.goal else { continue };
+        let states = &journey.path.states;
+        let last = states.len().saturating_sub(1) as f64;
+        if states.len() < 2 {
+            continue;
+        }
+        let mut highest = f64::NEG_INFINITY;
+        for (at, q) in instants(&journey.path) {
+            let gap = Touch::new(journey.case.bench, &q, *finger).gap;
+            highest = highest.max(gap);
+            let end = at == 0.0 || at == last;
+            ensure(end || gap > 0.0, || format!("the finger touches, gap {gap:e} m, at {at} of {last}"))?;
+            let touching = end || q.contacts[*finger].is_none() || at < 1.0;
+            ensure(touching, || format!("says that it touches at {at} of {last}"))?;
+        }
+        let moved = states[0].joints[*finger] != journey.reached.end.joints[*finger];
+        ensure(!moved || highest >= LIFTED, || format!("the finger rises {highest:e} m only"))?;
+    }
+    Ok(())
+}

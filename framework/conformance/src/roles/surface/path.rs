@@ -1,0 +1,157 @@
+//! Laws of shortest paths.
+
+use super::ground::{Ground, on_each};
+use super::point::is_contact;
+use crate::law::{Subject, context};
+use crate::reference::FacetSurface;
+use crate::report::{Fault, Finding, ensure};
+use regrasp_api::{Contact, Primitive, SurfaceParam, SurfacePath, Waypoint};
+
+/// Pairs of contacts on each object.
+const PAIRS: usize = 18;
+/// How far (m) the straight line between two waypoints may leave the surface: half of a plan's tolerance for closure.
+const BETWEEN: f64 = 1e-5;
+
+/// Tries something on paths over each object that a fingertip can follow.
+fn on_paths(
+    subject: &Subject<'_>,
+    mut check: impl FnMut(&Ground, &(Contact, Contact), &SurfacePath) -> Finding,
+) -> Finding {
+    on_each(subject, |ground| {
+        for pair in ground.pairs(51, PAIRS) {
+            match ground.path(&pair.0, &pair.1) {
+                Ok(path) => check(ground, &pair, &path)?,
+                Err(Fault::Skip(_)) => {}
+                Err(fault) => return Err(fault),
+            }
+        }
+        Ok(())
+    })
+}
+
+pub(super) fn endpoints(subject: &Subject<'_>) -> Finding {
+    on_paths(subject, |_, (from, to), path| {
+        let first = path.waypoints.first().map(|w| (w.contact, w.lift_length));
+        let last = path.waypoints.last().map(|w| w.contact);
+        ensure(first == Some((*from, 0.0)) && last == Some(*to), || {
+            format!("the path from {from:?} to {to:?} begins at {first:?} and ends at {last:?}")
+        })?;
+        let ends = [path.at(0.0), path.at(1.0)];
+        ensure(ends == [*from, *to], || format!("its ends are {ends:?}, not {from:?} and {to:?}"))
+    })?;
+    // From a contact to itself.
+    on_each(subject, |ground| {
+        let contact = ground.pairs(52, 1)[0].0;
+        let path = ground.path(&contact, &contact)?;
+        let stays = path.length.abs() <= 1e-9 && path.lift_length() <= 1e-9;
+        ensure(stays && path.at(0.5).p_OC == contact.p_OC, || format!("from a contact to itself: {path:?}"))
+    })
+}
+
+pub(super) fn on_surface(subject: &Subject<'_>) -> Finding {
+    on_paths(subject, |ground, _, path| {
+        let (inner, convex) = (path.waypoints.len().saturating_sub(1), ground.is_convex());
+        for waypoint in path.waypoints.get(1..inner).unwrap_or_default() {
+            let off = ground.closest(&waypoint.contact.p_OC).distance;
+            ensure(off.abs() <= 1e-7, || format!("a waypoint {off:e} m off the surface: {waypoint:?}"))?;
+            if convex {
+                is_contact(ground, &waypoint.contact, 1e-7)?;
+            }
+        }
+        // At a concave edge the contact jumps under a fingertip that stays.
+        let center = |w: &Waypoint| w.contact.tip_center(ground.radius);
+        let slides = |pair: &&[Waypoint]| convex || (center(&pair[1]) - center(&pair[0])).norm() > 1e-9;
+        for pair in path.waypoints.windows(2).filter(slides) {
+            let middle = pair[0].contact.p_OC.lerp(&pair[1].contact.p_OC, 0.5);
+            let off = ground.closest(&middle).distance;
+            ensure(off.abs() <= BETWEEN, || {
+                format!("{off:e} m off the surface between {:?} and {:?}", pair[0], pair[1])
+            })?;
+        }
+        Ok(())
+    })
+}
+
+pub(super) fn lift(subject: &Subject<'_>) -> Finding {
+    on_paths(subject, |ground, _, path| {
+        for pair in path.waypoints.windows(2) {
+            let (a, b) = (&pair[0].contact, &pair[1].contact);
+            let travelled = pair[1].lift_length - pair[0].lift_length;
+            let chord = (b.tip_center(ground.radius) - a.tip_center(ground.radius)).norm();
+            let turn = a.n_O.cross(&b.n_O).norm().atan2(a.n_O.dot(&b.n_O));
+            let longest = (b.p_OC - a.p_OC).norm() + ground.radius * turn;
+            // At a concave edge the contact jumps under a fingertip that stays.
+            let jump = chord < 1e-9;
+            let fits = travelled >= chord - 1e-9 && (jump || travelled <= 1.001 * longest + 1e-9);
+            ensure(travelled >= 0.0 && fits, || {
+                format!("the fingertip travels {travelled:e} m, its ends are {chord:e} m apart: {pair:?}")
+            })?;
+        }
+        Ok(())
+    })
+}
+
+pub(super) fn length(subject: &Subject<'_>) -> Finding {
+    on_paths(subject, |ground, (from, to), path| {
+        let chord = (to.p_OC - from.p_OC).norm();
+        ensure(path.length >= chord * (1.0 - 1e-9) - 1e-12, || {
+            format!("length {} m, but the ends are {chord} m apart: {from:?} {to:?}", path.length)
+        })?;
+        let legs = path.waypoints.windows(2).map(|w| (w[1].contact.p_OC - w[0].contact.p_OC).norm());
+        let sum: f64 = legs.sum();
+        // Chords are shorter than the arcs of a closed form; under a concave edge the contact jumps.
+        let slack = if ground.form.is_some() { 1e-3 } else { 1e-6 };
+        ensure(!ground.is_convex() || (path.length - sum).abs() <= slack * sum + 1e-9, || {
+            format!("length {} m, but the waypoints add up to {sum} m: {from:?} {to:?}", path.length)
+        })
+    })
+}
+
+pub(super) fn shortest(subject: &Subject<'_>) -> Finding {
+    let tolerance = subject.demands.geodesic_tolerance;
+    let mut reference: Option<(&str, FacetSurface)> = None;
+    on_paths(subject, |ground, (from, to), path| {
+        if !ground.is_convex() {
+            return Ok(());
+        }
+        let longest = match ground.form {
+            Some(Primitive::Sphere { radius }) => {
+                radius * from.p_OC.cross(&to.p_OC).norm().atan2(from.p_OC.dot(&to.p_OC))
+            }
+            _ => {
+                if reference.as_ref().is_none_or(|(name, _)| *name != ground.name) {
+                    let facets = FacetSurface::new(&ground.object.mesh, ground.radius);
+                    reference = Some((ground.name, facets));
+                }
+                let (_, facets) = reference.as_ref().expect("it was just made");
+                // The facets of a round object lie under its surface, by less than 1 % of the length.
+                let faceting = if ground.form.is_some() { 1.01 } else { 1.0 };
+                faceting * over_facets(facets, from, to)?
+            }
+        };
+        ensure(path.length <= longest * (1.0 + tolerance) + 1e-9, || {
+            format!("length {} m, but {longest} m is possible: {from:?} {to:?}", path.length)
+        })
+    })
+}
+
+/// The length (m) of the reference's path between the points of the facets closest to two contacts.
+fn over_facets(facets: &FacetSurface, from: &Contact, to: &Contact) -> Finding<f64> {
+    let [a, b] = [from, to].map(|contact| facets.project(&contact.p_OC, None).contact);
+    let mut path = SurfacePath::default();
+    facets.geodesic(&a, &b, &mut path, &mut context(0))?;
+    Ok(path.length)
+}
+
+pub(super) fn symmetric(subject: &Subject<'_>) -> Finding {
+    let tolerance = subject.demands.geodesic_tolerance;
+    on_paths(subject, |ground, (from, to), path| {
+        if !ground.is_convex() {
+            return Ok(());
+        }
+        let back = ground.path(to, from)?;
+        ensure((path.length - back.length).abs() <= tolerance * path.length + 1e-9, || {
+            format!("{} m there, {} m back: {from:?} {to:?}", path.length, back.length)
+        })
+    })
+}

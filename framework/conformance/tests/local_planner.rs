@@ -1,0 +1,344 @@
+//! For each law of local planners, in each of their slots, one liar that breaks it and no other.
+#![allow(missing_docs)]
+
+mod support;
+
+use regrasp_api::*;
+use regrasp_conformance::fixtures::{four_finger, free_fingertips};
+use regrasp_conformance::reference::{EdgeClosure, FineRolling, GraspLine, LiftOver};
+use regrasp_world::ChainHand;
+
+/// What a liar does wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Lie {
+    Nothing,
+    ForgetsTheStart,
+    HalfIsWhole,
+    AlmostThere,
+    NoPathNoMotion,
+    AlwaysRefuses,
+    CountsNothing,
+    TakesAnyTarget,
+    NeverStops,
+    OnlyAtHome,
+    WiderLimits,
+    SeesNoBodies,
+    TrustsEveryGrasp,
+    StoresOldContacts,
+    LongSteps,
+    LetsGo,
+    SlidesAlong,
+    MovesTheObject,
+    StraightThrough,
+}
+
+/// The honest planner for a target.
+fn honest(slot: Slot) -> &'static dyn LocalPlanner {
+    match slot {
+        Slot::GraspPlanner => &GraspLine,
+        Slot::TransferPlanner => &FineRolling,
+        _ => &LiftOver,
+    }
+}
+
+struct Liar {
+    slot: Slot,
+    lie: Lie,
+    home: std::thread::ThreadId,
+    wide: ChainHand,
+}
+
+/// The kit's hand with joints that move farther.
+fn wide(hand: &dyn Hand) -> ChainHand {
+    let prismatic = hand.finger(FingerIndex(0)).joints[0].kind == JointKind::Prismatic;
+    let mut description = if prismatic { free_fingertips() } else { four_finger() };
+    for joint in description.finger.iter_mut().flat_map(|finger| &mut finger.joint) {
+        (joint.lower, joint.upper) = (joint.lower - 0.05, joint.upper + 0.05);
+    }
+    ChainHand::new(description).unwrap()
+}
+
+struct NoBodies;
+
+impl Clearance for NoBodies {
+    fn object_free(&self, _: &Pose) -> Result<(), BodyPair> {
+        Ok(())
+    }
+    fn finger_free(&self, _: FingerIndex, _: &FingerJoints, _: &Pose, _: TipRule) -> Result<(), BodyPair> {
+        Ok(())
+    }
+    fn fingers_free(
+        &self,
+        _: (FingerIndex, &FingerJoints),
+        _: (FingerIndex, &FingerJoints),
+    ) -> Result<(), BodyPair> {
+        Ok(())
+    }
+    fn configuration_free(&self, _: &Configuration, _: FingerSet, _: bool) -> Result<(), BodyPair> {
+        Ok(())
+    }
+    fn distances(&self, _: &Configuration, _: f64) -> Vec<PairDistance> {
+        Vec::new()
+    }
+}
+
+struct AnyGrasp;
+
+impl StabilityTest for AnyGrasp {
+    fn test(&self, _: &Grasp<'_>, _: &mut Hint, _: &mut Context<'_>) -> Result<Stability, CallError> {
+        Ok(Stability::Stable)
+    }
+    fn assess(
+        &self,
+        grasp: &Grasp<'_>,
+        length: Option<f64>,
+        center_O: Option<Vec3>,
+        context: &mut Context<'_>,
+    ) -> Result<Assessment, CallError> {
+        EdgeClosure.assess(grasp, length, center_O, context)
+    }
+}
+
+/// The object moves, contact points and normals stay: fingertips slip.
+fn slide_along(
+    task: &Task<'_>,
+    from: &Configuration,
+    to: &Pose,
+    path: &mut Path,
+    context: &mut Context<'_>,
+) -> Result<Reached, CallError> {
+    path.restart(from);
+    let mut q = from.clone();
+    for step in 1..=20 {
+        context.proceed()?;
+        let before = (q.clone(), f64::from(step - 1) / 20.0);
+        q.X_HO = if step == 20 { *to } else { interpolate(&from.X_HO, to, f64::from(step) / 20.0) };
+        let mut closed = true;
+        for finger in from.holding().iter() {
+            let center = q.contact_tip_center(finger, task.hand.fingertip_radius()).unwrap();
+            match task.hand.inverse(finger, &center, &q.joints[finger]) {
+                Some(joints) => q.joints[finger] = joints,
+                None => closed = false,
+            }
+        }
+        let all = q.joints.fingers().collect();
+        let grasp = task.grasp(&q, q.holding());
+        let free = closed && task.clearance.configuration_free(&q, all, true).is_ok();
+        if !free || !task.stability.test(&grasp, &mut Hint::default(), context)?.is_stable() {
+            let stop = Some(context.reject(Slot::TransferPlanner, Reason::Collision));
+            return Ok(Reached { end: before.0, fraction: before.1, stop });
+        }
+        path.states.push(q.clone());
+    }
+    Ok(Reached { end: q, fraction: 1.0, stop: None })
+}
+
+impl Liar {
+    /// The honest answer to a task that may not be the true one.
+    fn answer(
+        &self,
+        task: &Task<'_>,
+        from: &Configuration,
+        to: &Target<'_>,
+        path: &mut Path,
+        context: &mut Context<'_>,
+    ) -> Result<Reached, CallError> {
+        let mut own = Context::new(context.random.clone(), &Uninterrupted);
+        let refused = || Reached { end: from.clone(), fraction: 0.0, stop: Some(Reason::Budget) };
+        match (self.lie, to) {
+            (Lie::AlwaysRefuses, _) if self.fits(to) => {
+                path.restart(from);
+                context.reject(self.slot, Reason::Budget);
+                Ok(refused())
+            }
+            (Lie::OnlyAtHome, _) if self.fits(to) && std::thread::current().id() != self.home => {
+                path.restart(from);
+                context.reject(self.slot, Reason::Budget);
+                Ok(refused())
+            }
+            (Lie::TakesAnyTarget, _) if !self.fits(to) => {
+                path.restart(from);
+                Ok(refused())
+            }
+            (Lie::CountsNothing, _) => {
+                context.proceed()?;
+                honest(self.slot).connect(task, from, to, Some(path), &mut own)
+            }
+            (Lie::NeverStops, _) => {
+                let found = honest(self.slot).connect(task, from, to, Some(path), &mut own);
+                context.tally.add(&own.tally);
+                found
+            }
+            (Lie::SlidesAlong, Target::Transfer(to)) => slide_along(task, from, to, path, context),
+            _ => honest(self.slot).connect(task, from, to, Some(path), context),
+        }
+    }
+
+    fn fits(&self, to: &Target<'_>) -> bool {
+        let slot = match to {
+            Target::Grasp(_) => Slot::GraspPlanner,
+            Target::Transfer(_) => Slot::TransferPlanner,
+            Target::Regrasp { .. } => Slot::RegraspPlanner,
+        };
+        slot == self.slot
+    }
+
+    /// Spoils an honest answer.
+    fn spoil(&self, task: &Task<'_>, path: &mut Path, reached: &mut Reached, context: &mut Context<'_>) {
+        let last = path.states.len() - 1;
+        let whole = reached.stop.is_none();
+        let finger = (0..4).map(FingerIndex).find(|&f| path.states[0].joints[f] != reached.end.joints[f]);
+        match self.lie {
+            Lie::ForgetsTheStart if last > 1 => drop(path.states.remove(0)),
+            Lie::HalfIsWhole if whole => reached.fraction = 0.5,
+            Lie::AlmostThere if whole => {
+                let (pose, first) =
+                    (&mut reached.end.X_HO.translation.vector, finger.unwrap_or(FingerIndex(0)));
+                if self.slot == Slot::TransferPlanner {
+                    pose.x += 1e-10;
+                } else {
+                    reached.end.joints[first][0] +=
+                        if reached.end.joints[first][0] > 0.0 { -1e-10 } else { 1e-10 };
+                }
+                path.states[last] = reached.end.clone();
+            }
+            Lie::StoresOldContacts if last > 2 => {
+                for i in (1..last).rev() {
+                    path.states[i].contacts = path.states[i.saturating_sub(4)].contacts;
+                }
+            }
+            Lie::LongSteps if last > 4 => {
+                let every = if self.slot == Slot::TransferPlanner { 5 } else { 8 };
+                let kept = (0..=last).filter(|i| i % every == 0 || *i == last);
+                path.states = kept.map(|i| path.states[i].clone()).collect();
+            }
+            Lie::LetsGo if last > 2 => {
+                let q = &mut path.states[last / 2];
+                let holds = |f: &FingerIndex| {
+                    let rest = task.grasp(q, q.holding().without(*f));
+                    EdgeClosure.test(&rest, &mut Hint::default(), context).unwrap().is_stable()
+                };
+                if let Some(finger) = (0..4).map(FingerIndex).find(holds) {
+                    q.contacts[finger] = None;
+                    // The fingertip stays where it was, closer than free fingers may be.
+                }
+            }
+            Lie::MovesTheObject => {
+                let end = path.states.len().saturating_sub(1).max(1);
+                path.states[1..end].iter_mut().for_each(|q| q.X_HO.translation.vector.y += 1e-12);
+            }
+            Lie::StraightThrough if last > 8 => drop(path.states.drain(3..last - 2)),
+            _ => {}
+        }
+    }
+}
+
+impl LocalPlanner for Liar {
+    fn connect(
+        &self,
+        task: &Task<'_>,
+        from: &Configuration,
+        to: &Target<'_>,
+        path: Option<&mut Path>,
+        context: &mut Context<'_>,
+    ) -> Result<Reached, CallError> {
+        let mut other = *task;
+        match self.lie {
+            Lie::WiderLimits => other.hand = &self.wide,
+            Lie::SeesNoBodies => other.clearance = &NoBodies,
+            Lie::TrustsEveryGrasp => other.stability = &AnyGrasp,
+            _ => {}
+        }
+        if self.lie == Lie::NoPathNoMotion && path.is_none() {
+            context.proceed()?;
+            if !self.fits(to) {
+                return honest(self.slot).connect(task, from, to, path, context);
+            }
+            let stop = Some(context.reject(self.slot, Reason::Budget));
+            return Ok(Reached { end: from.clone(), fraction: 0.0, stop });
+        }
+        let mut own = Path::default();
+        let mut reached = self.answer(&other, from, to, &mut own, context)?;
+        self.spoil(task, &mut own, &mut reached, context);
+        if let Some(path) = path {
+            *path = own;
+        }
+        Ok(reached)
+    }
+}
+
+macro_rules! liar {
+    ($slot:expr, $lie:expr) => {
+        Entry {
+            id: "local-planner/liar",
+            slots: &[$slot],
+            summary: "says what it likes",
+            references: &["nobody"],
+            schema: NoSettings::schema,
+            check: check_settings::<NoSettings>,
+            build: Build::LocalPlanner(|json, parts| {
+                NoSettings::from_json(json)?;
+                let home = std::thread::current().id();
+                Ok(Box::new(Liar { slot: $slot, lie: $lie, home, wide: wide(parts.hand) }))
+            }),
+        }
+    };
+}
+
+/// The liars that every slot has, and its own.
+macro_rules! judge_slot {
+    ($slot:expr, $prefix:literal, $($own:expr),* $(,)?) => {{
+        let liars = [
+            (liar!($slot, Lie::ForgetsTheStart), concat!($prefix, "-ends")),
+            (liar!($slot, Lie::HalfIsWhole), concat!($prefix, "-reached")),
+            (liar!($slot, Lie::AlmostThere), concat!($prefix, "-target")),
+            (liar!($slot, Lie::NoPathNoMotion), concat!($prefix, "-path-optional")),
+            (liar!($slot, Lie::AlwaysRefuses), concat!($prefix, "-succeeds")),
+            (liar!($slot, Lie::CountsNothing), concat!($prefix, "-reasons")),
+            (liar!($slot, Lie::TakesAnyTarget), concat!($prefix, "-wrong-target")),
+            (liar!($slot, Lie::NeverStops), concat!($prefix, "-interrupt")),
+            (liar!($slot, Lie::OnlyAtHome), concat!($prefix, "-pure")),
+            (liar!($slot, Lie::WiderLimits), concat!($prefix, "-limits")),
+            (liar!($slot, Lie::SeesNoBodies), concat!($prefix, "-collision-free")),
+            (liar!($slot, Lie::TrustsEveryGrasp), concat!($prefix, "-stable")),
+            $($own),*
+        ];
+        support::judge($slot, &liar!($slot, Lie::Nothing), &liars, &[]);
+    }};
+}
+
+#[test]
+fn each_liar_of_the_grasp_slot_fails_its_check_and_no_other() {
+    const SLOT: Slot = Slot::GraspPlanner;
+    judge_slot!(
+        SLOT,
+        "grasp",
+        (liar!(SLOT, Lie::StoresOldContacts), "grasp-contacts"),
+        (liar!(SLOT, Lie::LongSteps), "grasp-closed"),
+        (liar!(SLOT, Lie::LetsGo), "grasp-same-fingers"),
+    );
+}
+
+#[test]
+fn each_liar_of_the_transfer_slot_fails_its_check_and_no_other() {
+    const SLOT: Slot = Slot::TransferPlanner;
+    judge_slot!(
+        SLOT,
+        "transfer",
+        (liar!(SLOT, Lie::StoresOldContacts), "transfer-contacts"),
+        (liar!(SLOT, Lie::LongSteps), "transfer-closed"),
+        (liar!(SLOT, Lie::LetsGo), "transfer-same-fingers"),
+        (liar!(SLOT, Lie::SlidesAlong), "transfer-no-slip"),
+    );
+}
+
+#[test]
+fn each_liar_of_the_regrasp_slot_fails_its_check_and_no_other() {
+    const SLOT: Slot = Slot::RegraspPlanner;
+    judge_slot!(
+        SLOT,
+        "regrasp",
+        (liar!(SLOT, Lie::MovesTheObject), "regrasp-others-rest"),
+        (liar!(SLOT, Lie::StraightThrough), "regrasp-touches-at-ends"),
+    );
+}
