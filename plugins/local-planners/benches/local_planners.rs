@@ -10,10 +10,14 @@ use regrasp_local_planners::{Linear, LinearSettings, Rolling, RollingSettings, R
 use std::hint::black_box;
 use support::{Bench, context, geometry};
 
+fn sphere() -> ObjectModel {
+    support::object("{ kind = \"sphere\", radius = 0.03 }")
+}
+
 /// Elements are steps: criterion reports the time of one.
 fn rolling(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("rolling");
-    for (name, object) in [("sphere", support::sphere()), ("cube", support::cube())] {
+    for (name, object) in [("sphere", sphere()), ("cube", support::cube())] {
         let bench = Bench::new(support::four_finger(), object);
         let rolling = Rolling::new(RollingSettings::default(), &*bench.hand).unwrap();
         let mut random = Random::from_key(1, 0, 0, 0);
@@ -42,7 +46,7 @@ fn rolling(criterion: &mut Criterion) {
 }
 
 fn linear(criterion: &mut Criterion) {
-    let bench = Bench::new(support::four_finger(), support::sphere());
+    let bench = Bench::new(support::four_finger(), sphere());
     let linear = Linear::new(LinearSettings::default()).unwrap();
     let mut random = Random::from_key(1, 0, 0, 0);
     let (from, to, steps) = (0..1000)
@@ -68,7 +72,7 @@ fn linear(criterion: &mut Criterion) {
 }
 
 fn regrasp(criterion: &mut Criterion) {
-    let bench = Bench::new(support::four_finger(), support::sphere());
+    let bench = Bench::new(support::four_finger(), sphere());
     let rrt = Rrt::new(RrtSettings::default(), &*bench.hand).unwrap();
     let (task, finger, mut random) = (bench.task(), FingerIndex(0), Random::from_key(1, 0, 0, 0));
     let (from, contact, joints, steps) = (0..10_000)

@@ -80,6 +80,7 @@ impl LocalPlanner for Linear {
         if let Some(path) = path.as_deref_mut() {
             path.restart(from);
         }
+        context.proceed()?;
         let mut scratch = SCRATCH.take();
         let obstacle = self.obstacle(task, from, to, &mut scratch, context)?;
         if let (None, Some(path)) = (obstacle, path) {

@@ -59,7 +59,7 @@ fn random_paths_are_closed_and_stable_at_every_state() {
         ("ellipsoid", support::ellipsoid()),
         ("ring", support::ring()),
     ] {
-        for hand in [support::four_finger(), support::free_tips()] {
+        for hand in [support::four_finger(), support::free_tips(), support::redundant()] {
             let bench = support::Bench::new(hand, object.clone());
             let (mut random, mut refused) = (Random::from_key(5, 7, 2, 1), Vec::new());
             for _ in 0..12 {

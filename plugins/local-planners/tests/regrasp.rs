@@ -79,7 +79,7 @@ fn random_regrasps_touch_at_their_ends_only() {
         ("ellipsoid", support::ellipsoid()),
         ("ring", support::ring()),
     ] {
-        for hand in [support::four_finger(), support::free_tips()] {
+        for hand in [support::four_finger(), support::free_tips(), support::redundant()] {
             let mut bench = support::Bench::new(hand, object.clone());
             bench.stability = Box::new(support::Glue);
             let (mut random, mut complete) = (Random::from_key(2, 7, 1, 8), 0);

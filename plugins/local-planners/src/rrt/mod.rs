@@ -172,6 +172,7 @@ impl LocalPlanner for Rrt {
         }
         let start = End { joints: &from.joints[finger], contact: from.contacts[finger].as_ref() };
         let target = End { joints, contact };
+        context.proceed()?;
         if !others_hold(task, from, finger, context)? {
             return Ok(refuse(SLOT, Reason::Stability, from, context));
         }

@@ -120,6 +120,23 @@ pub fn four_finger() -> HandDescription {
     toml::from_str(&std::fs::read_to_string(file).unwrap()).unwrap()
 }
 
+/// The same with one joint to spare in every finger: the last link bends once more.
+pub fn redundant() -> HandDescription {
+    let mut hand = four_finger();
+    hand.name = "redundant".into();
+    for finger in &mut hand.finger {
+        let mut last = finger.joint[2].clone();
+        last.name += "-tip";
+        (last.lower, last.upper) = (-0.4, 0.8);
+        last.origin.position = [0.0, 0.0, 0.03];
+        last.link.clear();
+        finger.joint.push(last);
+        finger.tip = [0.0, 0.0, 0.02];
+        finger.rest.push(0.1);
+    }
+    hand
+}
+
 /// Four fingertips without links, each on three slides, reaching 0.15 m about the origin.
 pub fn free_tips() -> HandDescription {
     let mut finger = String::new();
@@ -141,7 +158,7 @@ pub fn object(shape: &str) -> ObjectModel {
 }
 
 pub fn sphere() -> ObjectModel {
-    object("{ kind = \"sphere\", radius = 0.03 }")
+    object("{ kind = \"sphere\", radius = 0.03, facets = 320 }")
 }
 
 pub fn cube() -> ObjectModel {
@@ -149,12 +166,12 @@ pub fn cube() -> ObjectModel {
 }
 
 pub fn ellipsoid() -> ObjectModel {
-    object("{ kind = \"ellipsoid\", semi_axes = [0.04, 0.025, 0.025] }")
+    object("{ kind = \"ellipsoid\", semi_axes = [0.04, 0.025, 0.025], facets = 320 }")
 }
 
 /// A ring that a fingertip fits through: concave along its inner side.
 pub fn ring() -> ObjectModel {
-    object("{ kind = \"torus\", ring_radius = 0.03, tube_radius = 0.012 }")
+    object("{ kind = \"torus\", ring_radius = 0.03, tube_radius = 0.012, facets = 512 }")
 }
 
 /// A random configuration with all fingers in contact and a stable grasp, collision-free.
