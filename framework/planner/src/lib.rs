@@ -2,7 +2,7 @@
 //!
 //! Implements A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007,
 //! over the six roles of `regrasp-api`; it names no plugin. Data flows one way: [`solve`] finds grasps at start and goals
-//! (`endpoints`), runs one search a goal (`search`, on `graph`), whose query (`query`) is decomposed (`decompose`, `steps`),
+//! (`endpoints`), runs one search a goal (`search`, on `graph`), whose query (`query`) is decomposed (`decompose`, `steps`, `order`),
 //! smooths the whole (`smooth`) and times it. The one way back: an edge that cannot be decomposed leaves the graph.
 //!
 //! The result is that of the sequential algorithm for any number of threads: every expensive call is a pure function of its
@@ -14,6 +14,7 @@ mod draft;
 mod endpoints;
 mod error;
 mod graph;
+mod order;
 mod query;
 mod report;
 mod search;

@@ -1,5 +1,6 @@
 //! Executable steps between two configurations: transfers and regrasps (Algorithm 3 and the decomposition).
 
+use crate::order::Order;
 use crate::session::Session;
 use regrasp_api::{CallError, Configuration, Context, FingerIndex, FingerSet, Path, Reached, Target, Task};
 use regrasp_plan::{Segment, SegmentKind};
@@ -83,60 +84,21 @@ pub(crate) fn regrasp_all(
     to: &Configuration,
     context: &mut Context<'_>,
 ) -> Result<Option<Vec<Segment>>, CallError> {
-    let mut order = Order { session, task, to, dead: [false; 256], steps: Vec::new() };
-    let moved = differing(from, to);
-    Ok(if order.search(from, moved, context)? { Some(order.steps) } else { None })
+    Order::new(session, task, from, to).find(context)
 }
 
-/// Depth-first search over the orders of the fingers; what is left to move decides success, so dead sets are remembered.
-struct Order<'a> {
-    session: &'a Session<'a>,
-    task: &'a Task<'a>,
-    to: &'a Configuration,
-    dead: [bool; 256],
-    steps: Vec<Segment>,
-}
-
-impl Order<'_> {
-    fn search(
-        &mut self,
-        q: &Configuration,
-        left: FingerSet,
-        context: &mut Context<'_>,
-    ) -> Result<bool, CallError> {
-        if left.is_empty() {
-            return Ok(true);
-        }
-        if self.dead[usize::from(left.bits())] {
-            return Ok(false);
-        }
-        for finger in left.iter() {
-            context.proceed()?;
-            let Some(segment) = self.regrasp(q, finger, context)? else { continue };
-            let next = segment.states.last().expect("a regrasp has two ends").clone();
-            self.steps.push(segment);
-            if self.search(&next, left.without(finger), context)? {
-                return Ok(true);
-            }
-            self.steps.pop();
-        }
-        self.dead[usize::from(left.bits())] = true;
-        Ok(false)
-    }
-
-    fn regrasp(
-        &self,
-        q: &Configuration,
-        finger: FingerIndex,
-        context: &mut Context<'_>,
-    ) -> Result<Option<Segment>, CallError> {
-        let mut path = Path::default();
-        let (contact, joints) = (self.to.contacts[finger].as_ref(), &self.to.joints[finger]);
-        let target = Target::Regrasp { finger, contact, joints };
-        let reached =
-            self.session.drivers.regrasp.connect(self.task, q, &target, Some(&mut path), context)?;
-        let segment =
-            || Segment { kind: SegmentKind::Regrasp(finger), states: path.states, times: Vec::new() };
-        Ok(reached.is_complete().then(segment))
-    }
+/// One finger moves from `q` to its contact and joints of `to`; `None` if it cannot.
+pub(crate) fn regrasp(
+    session: &Session<'_>,
+    task: &Task<'_>,
+    q: &Configuration,
+    (finger, to): (FingerIndex, &Configuration),
+    context: &mut Context<'_>,
+) -> Result<Option<Segment>, CallError> {
+    let mut path = Path::default();
+    let target =
+        Target::Regrasp { finger, contact: to.contacts[finger].as_ref(), joints: &to.joints[finger] };
+    let reached = session.drivers.regrasp.connect(task, q, &target, Some(&mut path), context)?;
+    let segment = || Segment { kind: SegmentKind::Regrasp(finger), states: path.states, times: Vec::new() };
+    Ok(reached.is_complete().then(segment))
 }
