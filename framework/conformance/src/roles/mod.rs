@@ -1,6 +1,7 @@
 //! The laws of each role.
 
 pub(crate) mod contact_model;
+mod graph_strategy;
 mod local_planner;
 mod sampler;
 mod stability;
@@ -21,6 +22,6 @@ pub(crate) fn laws(slot: Slot) -> &'static [Law] {
         Slot::TransferPlanner => local_planner::TRANSFER,
         Slot::RegraspPlanner => local_planner::REGRASP,
         Slot::Sampler => sampler::LAWS,
-        _ => &[],
+        Slot::GraphStrategy => graph_strategy::LAWS,
     }
 }

@@ -1,0 +1,76 @@
+//! For each law of strategies one liar that breaks it and no other.
+#![allow(missing_docs)]
+
+mod support;
+
+use regrasp_api::*;
+use regrasp_conformance::reference::Interleaving;
+
+/// What a liar does wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Lie {
+    Nothing,
+    ExtendsNobody,
+    NeverAsks,
+    KnowsNoBudget,
+    GivesUp,
+    TriesAgain,
+    OnlyAtHome,
+}
+
+struct Liar {
+    lie: Lie,
+    home: std::thread::ThreadId,
+}
+
+impl GraphStrategy for Liar {
+    fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError> {
+        let nodes = graph.node_count();
+        let (generated, most) = graph.generated();
+        match self.lie {
+            Lie::ExtendsNobody if nodes % 17 == 16 && generated < most && context.random.unit() < 0.5 => {
+                Ok(Action::Extend(NodeId(nodes as u32), Link::None))
+            }
+            Lie::NeverAsks if graph.joined() => {
+                Ok(if generated < most { Action::Explore(Link::None) } else { Action::Stop })
+            }
+            Lie::KnowsNoBudget if generated >= most => Ok(Action::Explore(Link::Components)),
+            Lie::GivesUp if !graph.joined() && generated > most / 2 => Ok(Action::Stop),
+            Lie::TriesAgain if !graph.joined() && generated < most && context.random.unit() < 0.8 => {
+                Ok(Action::Connect(graph.start(), graph.goals()[0], EdgeKind::Grasp))
+            }
+            Lie::OnlyAtHome if std::thread::current().id() != self.home => Ok(Action::Stop),
+            _ => Interleaving.next(graph, context),
+        }
+    }
+}
+
+macro_rules! liar {
+    ($lie:expr) => {
+        Entry {
+            id: "graph-strategy/liar",
+            slots: &[Slot::GraphStrategy],
+            summary: "says what it likes",
+            references: &["nobody"],
+            schema: NoSettings::schema,
+            check: check_settings::<NoSettings>,
+            build: Build::GraphStrategy(|json, _| {
+                NoSettings::from_json(json)?;
+                Ok(Box::new(Liar { lie: $lie, home: std::thread::current().id() }))
+            }),
+        }
+    };
+}
+
+#[test]
+fn each_liar_fails_its_check_and_no_other() {
+    let liars = [
+        (liar!(Lie::ExtendsNobody), "strategy-sensible"),
+        (liar!(Lie::NeverAsks), "strategy-queries"),
+        (liar!(Lie::KnowsNoBudget), "strategy-stops"),
+        (liar!(Lie::GivesUp), "strategy-goes-on"),
+        (liar!(Lie::TriesAgain), "strategy-not-futile"),
+        (liar!(Lie::OnlyAtHome), "strategy-pure"),
+    ];
+    support::judge(Slot::GraphStrategy, &liar!(Lie::Nothing), &liars, &[]);
+}
