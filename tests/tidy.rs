@@ -92,6 +92,10 @@ fn allowed(package: &Package) -> Option<BTreeSet<&'static str>> {
     if FREE.contains(&package.name.as_str()) {
         return None;
     }
+    // A dynamic shim exports one crate of plugins and does nothing else.
+    if package.name == "regrasp-template-dynamic" {
+        return Some(["regrasp-api", "regrasp-template"].into());
+    }
     if package.is_plugin {
         return Some(["regrasp-api"].into());
     }

@@ -1,0 +1,21 @@
+//! The plugins keep the laws of their roles.
+#![allow(missing_docs)]
+
+use regrasp_conformance::{Demands, Report, check_with, registered, registered_are_silent};
+use regrasp_template as _; // a dependency alone registers nothing
+
+/// Paths of `surface/template` may be this much longer than the shortest, relative.
+const GEODESIC_TOLERANCE: f64 = 0.05;
+
+#[test]
+fn plugins_conform() {
+    let demands = Demands { geodesic_tolerance: GEODESIC_TOLERANCE, ..Demands::default() };
+    let reports: Vec<Report> = registered().into_iter().map(|entry| check_with(entry, &demands)).collect();
+    assert_eq!(reports.len(), 6, "one plugin of each role");
+    reports.iter().for_each(Report::assert_passes);
+}
+
+#[test]
+fn plugins_print_nothing() {
+    registered_are_silent(concat!(module_path!(), "::plugins_print_nothing"));
+}
