@@ -1,7 +1,7 @@
 //! Which configurations may become nodes.
 
 use regrasp_api::{
-    Admissible, CallError, Configuration, Context, FingerIndex, FingerSet, LoneFinger, Reason, Slot, Task,
+    Admissible, CallError, Configuration, Context, FingerIndex, FingerSet, Grasp, LoneFinger, Reason, Slot, Task,
     TipRule,
 };
 
@@ -47,11 +47,26 @@ impl Admissible for Leavable {
         context.count_call(Slot::StabilityTest);
         // More contacts never make a grasp unstable: where n - 1 subsets are stable the whole is.
         if task.stability.liftable(&grasp, enough, context)?.len() >= enough.max(1) {
-            return Ok(None);
+            // At rest; while the object moves, contacts may spin and their torsion is gone.
+            return Ok(if holds_in_transfers(task, q, &grasp, context)? { None } else { Some(Reason::Stability) });
         }
         let whole = task.stability.test(&grasp, &mut Default::default(), context)?;
         Ok(Some(if whole.is_stable() { Reason::Liftable } else { Reason::Stability }))
     }
+}
+
+/// Whether the grasp that is stable at rest is still so while the object moves.
+fn holds_in_transfers(
+    task: &Task<'_>,
+    q: &Configuration,
+    resting: &Grasp<'_>,
+    context: &mut Context<'_>,
+) -> Result<bool, CallError> {
+    if !resting.contacts().iter().any(|contact| contact.cone.carries_torsion()) {
+        return Ok(true);
+    }
+    let moving = task.transfer_grasp(q, FingerSet::first(q.contacts.len()));
+    Ok(task.stability.test(&moving, &mut Default::default(), context)?.is_stable())
 }
 
 /// Whether the finger can stand at every retreat height above its contact, along the normal.

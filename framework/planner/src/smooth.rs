@@ -8,8 +8,10 @@
 use crate::draft::{Draft, Station, regrasps};
 use crate::session::{Call, Counted, Session};
 use crate::steps;
-use regrasp_api::{CallError, Context, FingerSet, Tally, Task};
+use regrasp_api::{CallError, Configuration, Context, FingerSet, Tally, Task};
 use regrasp_plan::Segment;
+use std::collections::HashSet;
+use std::hash::{Hash, Hasher};
 
 /// How many stations ahead a shortcut may reach.
 const REACH: usize = 3;
@@ -19,6 +21,8 @@ pub(crate) struct Smoother<'a> {
     pub session: &'a Session<'a>,
     pub task: &'a Task<'a>,
     pub draft: Draft,
+    /// Shortcuts that failed before, by their keys: later sweeps leave them out.
+    pub failed: HashSet<u64>,
 }
 
 /// A shortcut to try: from the start of station `from`, with the fingers `first` regrasped there, to the end of station `to`.
@@ -52,7 +56,7 @@ impl Smoother<'_> {
     fn improve(&mut self, place: usize, left: &mut usize, tally: &mut Tally) -> Result<bool, CallError> {
         let shortcuts = self.shortcuts(place);
         let count = shortcuts.len().min(*left);
-        let mut found = None;
+        let (mut found, mut failed) = (None, Vec::new());
         {
             let (this, number) = (&*self, *left);
             for (i, tried) in
@@ -60,12 +64,16 @@ impl Smoother<'_> {
             {
                 *left -= 1;
                 tally.add(&tried.tally);
-                if let Some(segments) = tried.result? {
-                    found = Some((shortcuts[i], segments));
-                    break;
+                match tried.result? {
+                    None => failed.push(self.key(&shortcuts[i])),
+                    Some(segments) => {
+                        found = Some((shortcuts[i], segments));
+                        break;
+                    }
                 }
             }
         }
+        self.failed.extend(failed);
         let Some((shortcut, segments)) = found else { return Ok(false) };
         self.draft.replace(shortcut.from.start..shortcut.to.end, segments);
         Ok(true)
@@ -89,7 +97,12 @@ impl Smoother<'_> {
             subsets.sort_by_key(|set| set.len());
             all.extend(subsets.into_iter().map(|first| Shortcut { from, to, first }));
         }
-        all.retain(|shortcut| self.fewest_regrasps(shortcut) < self.regrasps_between(shortcut));
+        all.retain(|shortcut| {
+            self.fewest_regrasps(shortcut) < self.regrasps_between(shortcut)
+                && !self.failed.contains(&self.key(shortcut))
+                && steps::barred_half_way(self.task, &self.departure(shortcut), self.arrival(shortcut))
+                    .is_none()
+        });
         all
     }
 
@@ -111,16 +124,11 @@ impl Smoother<'_> {
         context: &mut Context<'_>,
     ) -> Result<Option<Vec<Segment>>, CallError> {
         let (session, task) = (self.session, self.task);
-        let (start, leave) =
-            (self.draft.boundary(shortcut.from.start), self.draft.boundary(shortcut.from.end));
-        let mut there = start.clone();
-        for finger in shortcut.first.iter() {
-            (there.joints[finger], there.contacts[finger]) = (leave.joints[finger], leave.contacts[finger]);
-        }
+        let (start, there) = (self.draft.boundary(shortcut.from.start), self.departure(shortcut));
         let Some(mut segments) = steps::regrasp_all(session, task, start, &there, context)? else {
             return Ok(None);
         };
-        let to = self.draft.boundary(shortcut.to.end);
+        let to = self.arrival(shortcut);
         let rest = if self.draft.is_free_end(shortcut.to.end) {
             let (reached, segment) = steps::transfer(session, task, &there, to, context)?;
             reached.is_complete().then(|| vec![segment])
@@ -131,6 +139,31 @@ impl Smoother<'_> {
             segments.extend(rest);
             segments
         }))
+    }
+
+    /// The configuration in which a shortcut leaves its first station.
+    fn departure(&self, shortcut: &Shortcut) -> Configuration {
+        let leave = self.draft.boundary(shortcut.from.end);
+        let mut there = self.draft.boundary(shortcut.from.start).clone();
+        for finger in shortcut.first.iter() {
+            (there.joints[finger], there.contacts[finger]) = (leave.joints[finger], leave.contacts[finger]);
+        }
+        there
+    }
+
+    /// The configuration in which a shortcut ends.
+    fn arrival(&self, shortcut: &Shortcut) -> &Configuration {
+        self.draft.boundary(shortcut.to.end)
+    }
+
+    /// What tells a shortcut's motion from any other: joints at departure and arrival, to the last bit.
+    fn key(&self, shortcut: &Shortcut) -> u64 {
+        let mut hasher = std::hash::DefaultHasher::new();
+        for q in [&self.departure(shortcut), self.arrival(shortcut)] {
+            let joints = q.joints.iter().flat_map(|(_, joints)| joints.iter());
+            joints.for_each(|joint| joint.to_bits().hash(&mut hasher));
+        }
+        hasher.finish()
     }
 
     /// The regrasps that a shortcut needs at least: after a roll every holding finger has drifted.

@@ -302,8 +302,12 @@ impl Run<'_> {
         }
         self.request.progress.smoothing(self.draft.segments.len());
         let tries = self.request.problem.limits.budget.smoothing * self.draft.segments.len();
-        let mut smoother =
-            Smoother { session: self.session, task: &self.task, draft: std::mem::take(&mut self.draft) };
+        let mut smoother = Smoother {
+            session: self.session,
+            task: &self.task,
+            draft: std::mem::take(&mut self.draft),
+            failed: Default::default(),
+        };
         let smoothed = smoother.run(tries, &mut self.tally);
         self.draft = smoother.draft;
         smoothed
