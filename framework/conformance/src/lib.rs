@@ -2,7 +2,7 @@
 //!
 //! An author calls it from one test file of the plugin's crate:
 //!
-//! ```ignore
+//! ```text
 //! use my_plugin as _; // links the crate, so that its entries are registered
 //! regrasp_conformance::registered_plugins_conform!();
 //! ```

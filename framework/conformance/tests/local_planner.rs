@@ -45,7 +45,7 @@ struct Liar {
     slot: Slot,
     lie: Lie,
     home: std::thread::ThreadId,
-    wide: ChainHand,
+    wide: Option<ChainHand>,
 }
 
 /// The kit's hand with joints that move farther.
@@ -269,7 +269,7 @@ impl LocalPlanner for Liar {
         let object_counts = self.slot == Slot::RegraspPlanner;
         let few = FewBodies { true_one: task.clearance, object_counts };
         match self.lie {
-            Lie::WiderLimits => other.hand = &self.wide,
+            Lie::WiderLimits => other.hand = self.wide.as_ref().unwrap(),
             Lie::SeesFewBodies => other.clearance = &few,
             Lie::TrustsEveryGrasp => other.stability = &AnyGrasp,
             _ => {}
@@ -304,7 +304,8 @@ macro_rules! liar {
             build: Build::LocalPlanner(|json, parts| {
                 NoSettings::from_json(json)?;
                 let home = std::thread::current().id();
-                Ok(Box::new(Liar { slot: $slot, lie: $lie, home, wide: wide(parts.hand) }))
+                let wide = ($lie == Lie::WiderLimits).then(|| wide(parts.hand));
+                Ok(Box::new(Liar { slot: $slot, lie: $lie, home, wide }))
             }),
         }
     };

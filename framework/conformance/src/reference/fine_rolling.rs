@@ -14,6 +14,18 @@ const PART: f64 = 0.5;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FineRolling;
 
+/// Velocity, in H, of the tip's material point at the contact, per speed of the first three joints.
+fn contact_speeds(task: &Task<'_>, q: &Configuration, finger: FingerIndex, n_O: &Vec3) -> Mat3 {
+    let tip = task.hand.tip_kinematics(finger, &q.joints[finger]);
+    // The material point lies at -r n from the centre.
+    let arm = q.X_HO.rotation * n_O * task.hand.fingertip_radius();
+    let column = |j: usize| -> Vec3 {
+        let (v, w): (Vec3, Vec3) = (tip.J_v.column(j).into(), tip.J_w.column(j).into());
+        v + arm.cross(&w)
+    };
+    Mat3::from_columns(&[column(0), column(1), column(2)])
+}
+
 /// The configuration with the object at `X_HO`, `finger` having rolled along, its joint speeds taken at `at`.
 fn roll(
     task: &Task<'_>,
@@ -25,15 +37,7 @@ fn roll(
     let contact = at.contacts[finger].ok_or(Reason::Closure)?;
     // How the object's material point at the contact moves over the whole step.
     let wish = to_hand(X_HO, &contact.p_OC) - to_hand(&q.X_HO, &contact.p_OC);
-    let tip = task.hand.tip_kinematics(finger, &at.joints[finger]);
-    let n_H = at.X_HO.rotation * contact.n_O;
-    let arm = n_H * task.hand.fingertip_radius();
-    // The tip's material point at the contact lies at -r n from the centre.
-    let column = |j: usize| -> Vec3 {
-        let (v, w): (Vec3, Vec3) = (tip.J_v.column(j).into(), tip.J_w.column(j).into());
-        v + arm.cross(&w)
-    };
-    let speeds = Mat3::from_columns(&[column(0), column(1), column(2)]);
+    let speeds = contact_speeds(task, at, finger, &contact.n_O);
     let moves = speeds.lu().solve(&wish).ok_or(Reason::Reach)?;
     let mut next = q.clone();
     next.X_HO = *X_HO;
@@ -62,6 +66,14 @@ fn advance(task: &Task<'_>, q: &Configuration, X_HO: &Pose) -> Result<Configurat
     Ok(next)
 }
 
+/// How many steps the motion between two poses takes.
+fn step_count(task: &Task<'_>, from: &Pose, to: &Pose) -> usize {
+    let distance = (to.translation.vector - from.translation.vector).norm();
+    let angle = angle_between(&from.rotation, &to.rotation);
+    let steps = (distance / task.resolution.transfer_step).max(angle / task.resolution.transfer_turn);
+    (steps / PART).ceil().max(1.0) as usize
+}
+
 impl LocalPlanner for FineRolling {
     fn connect(
         &self,
@@ -75,11 +87,7 @@ impl LocalPlanner for FineRolling {
         if let Some(path) = path.as_deref_mut() {
             path.restart(from);
         }
-        let distance = (to.translation.vector - from.X_HO.translation.vector).norm();
-        let angle = angle_between(&from.X_HO.rotation, &to.rotation);
-        let resolution = task.resolution;
-        let steps = (distance / resolution.transfer_step).max(angle / resolution.transfer_turn) / PART;
-        let count = steps.ceil().max(1.0) as usize;
+        let count = step_count(task, &from.X_HO, to);
         let mut end = from.clone();
         for step in 1..=count {
             context.proceed()?;

@@ -13,21 +13,51 @@ pub struct Closest {
     pub distance: f64,
 }
 
-/// The closest point of the mesh, the first of several; the sign by the winding number.
+/// The closest point of the mesh, the first of several; the sign by the normals that meet there.
 pub fn closest_on_mesh(mesh: &Mesh, p: &Vec3) -> Closest {
     let mut best = Closest { facet: 0, point: Vec3::zeros(), distance: f64::INFINITY };
     for facet in 0..mesh.facets().len() as u32 {
-        let point = closest_on_facet(mesh, facet, p);
-        let distance = (point - p).norm();
-        if distance < best.distance {
-            best = Closest { facet, point, distance };
+        if plane_distance(mesh, facet, p) < best.distance {
+            let point = closest_on_facet(mesh, facet, p);
+            let distance = (point - p).norm();
+            if distance < best.distance {
+                best = Closest { facet, point, distance };
+            }
         }
     }
-    if is_inside(mesh, p) {
+    if (p - best.point).dot(&pseudonormal(mesh, &best.point)) < 0.0 {
         best.distance = -best.distance;
     }
     best
 }
+
+/// The distance (m) of a point from a facet's plane.
+fn plane_distance(mesh: &Mesh, facet: u32, p: &Vec3) -> f64 {
+    let corner = mesh.vertices()[mesh.facets()[facet as usize][0] as usize];
+    mesh.normal(facet).dot(&(p - corner)).abs()
+}
+
+/// The normals of the facets that meet at a point of the surface, weighted with their angles there: its sign tells inside from outside
+/// (Bærentzen & Aanæs, "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 2005).
+fn pseudonormal(mesh: &Mesh, point: &Vec3) -> Vec3 {
+    let mut sum = Vec3::zeros();
+    for facet in 0..mesh.facets().len() as u32 {
+        let near = plane_distance(mesh, facet, point) < SAME;
+        if !near || (closest_on_facet(mesh, facet, point) - point).norm() > SAME {
+            continue;
+        }
+        let corners = mesh.corners(facet);
+        let angle = match corners.iter().position(|corner| (corner - point).norm() < SAME) {
+            Some(k) => (corners[(k + 1) % 3] - corners[k]).angle(&(corners[(k + 2) % 3] - corners[k])),
+            None => std::f64::consts::PI,
+        };
+        sum += mesh.normal(facet) * angle;
+    }
+    sum
+}
+
+/// Points closer than this (m) are one.
+const SAME: f64 = 1e-10;
 
 /// The foot on the facet's plane if it lies inside, otherwise the best of the three edges' points.
 pub fn closest_on_facet(mesh: &Mesh, facet: u32, p: &Vec3) -> Vec3 {
@@ -46,19 +76,6 @@ pub fn closest_on_facet(mesh: &Mesh, facet: u32, p: &Vec3) -> Vec3 {
 pub fn closest_on_segment(a: &Vec3, b: &Vec3, p: &Vec3) -> Vec3 {
     let along = b - a;
     a + along * ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
-}
-
-/// Whether the facets' solid angles add up to a full sphere (Van Oosterom & Strackee, "The solid angle of a plane triangle", IEEE
-/// Trans. Biomed. Eng. 1983).
-fn is_inside(mesh: &Mesh, p: &Vec3) -> bool {
-    let angle = |facet: u32| {
-        let [a, b, c] = mesh.corners(facet).map(|corner| corner - p);
-        let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
-        let below = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
-        2.0 * a.dot(&b.cross(&c)).atan2(below)
-    };
-    let sum: f64 = (0..mesh.facets().len() as u32).map(angle).sum();
-    sum > std::f64::consts::TAU
 }
 
 /// The closest point of the closed form.
@@ -128,6 +145,35 @@ fn on_ellipsoid(semi_axes: &Vec3, p: &Vec3) -> Vec3 {
 mod tests {
     use super::*;
     use regrasp_world::primitive_mesh;
+
+    /// Whether the facets' solid angles add up to a full sphere (Van Oosterom & Strackee, "The solid angle of a plane triangle", IEEE
+    /// Trans. Biomed. Eng. 1983).
+    fn is_inside(mesh: &Mesh, p: &Vec3) -> bool {
+        let angle = |facet: u32| {
+            let [a, b, c] = mesh.corners(facet).map(|corner| corner - p);
+            let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+            let below = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+            2.0 * a.dot(&b.cross(&c)).atan2(below)
+        };
+        let sum: f64 = (0..mesh.facets().len() as u32).map(angle).sum();
+        sum > std::f64::consts::TAU
+    }
+
+    #[test]
+    fn signs_are_those_of_the_winding_number() {
+        let mut random = crate::law::random(6);
+        for primitive in [
+            Primitive::Cuboid { half_size: Vec3::new(0.02, 0.03, 0.04) },
+            Primitive::Torus { ring_radius: 0.03, tube_radius: 0.01 },
+        ] {
+            let mesh = primitive_mesh(&primitive, 200).unwrap();
+            for _ in 0..500 {
+                let p = random.direction() * random.range(0.0, 0.06);
+                let found = closest_on_mesh(&mesh, &p);
+                assert_eq!(found.distance < 0.0, is_inside(&mesh, &p), "{primitive:?} at {p:?}: {found:?}");
+            }
+        }
+    }
 
     #[test]
     fn fine_meshes_and_closed_forms_agree() {

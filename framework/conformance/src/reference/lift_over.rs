@@ -51,6 +51,11 @@ impl Regrasp<'_> {
         Ok(way)
     }
 
+    /// Postures that lead away from the object, none where the finger is free.
+    fn leave(&self, contact: Option<&Contact>, joints: &FingerJoints) -> Result<Vec<FingerJoints>, Reason> {
+        contact.map_or(Ok(Vec::new()), |contact| self.lift(contact, joints))
+    }
+
     /// Postures along the geodesic at lift height.
     fn follow(&self, slide: &SurfacePath, near: &FingerJoints) -> Result<Vec<FingerJoints>, Reason> {
         let count = (4.0 * slide.lift_length() / self.task.resolution.regrasp_step).ceil() as usize;
@@ -86,20 +91,18 @@ fn postures(
         return Ok(Err(Reason::Stability));
     }
     let regrasp = Regrasp { task, from, finger };
-    let lift = |contact: Option<&Contact>, joints: &FingerJoints| match contact {
-        Some(contact) => regrasp.lift(contact, joints),
-        None => Ok(Vec::new()),
+    let ends = regrasp
+        .leave(from.contacts[finger].as_ref(), &from.joints[finger])
+        .and_then(|up| Ok((up, regrasp.leave(contact, joints)?)));
+    let (mut way, mut down) = match ends {
+        Ok(ends) => ends,
+        Err(reason) => return Ok(Err(reason)),
     };
-    let (mut way, mut down) =
-        match (lift(from.contacts[finger].as_ref(), &from.joints[finger]), lift(contact, joints)) {
-            (Ok(up), Ok(down)) => (up, down),
-            (Err(reason), _) | (_, Err(reason)) => return Ok(Err(reason)),
-        };
     let high = *way.last().unwrap_or(&from.joints[finger]);
-    let between = match (from.contacts[finger], contact) {
+    let between = match (&from.contacts[finger], contact) {
         (Some(a), Some(b)) => {
             let mut slide = SurfacePath::default();
-            if !task.surface.geodesic(&a, b, &mut slide, context)? {
+            if !task.surface.geodesic(a, b, &mut slide, context)? {
                 return Ok(Err(Reason::Surface));
             }
             regrasp.follow(&slide, &high)
@@ -107,9 +110,8 @@ fn postures(
         _ => regrasp.straight(&high, down.last().unwrap_or(joints)),
     };
     Ok(between.map(|between| {
-        way.extend(between);
         down.reverse();
-        way.extend(down);
+        way.extend(between.into_iter().chain(down));
         if way.last() != Some(joints) {
             way.push(*joints);
         }

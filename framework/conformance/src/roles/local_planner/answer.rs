@@ -35,7 +35,7 @@ pub(super) fn target<K: Kind>(subject: &Subject<'_>) -> Finding {
     for journey in journeys::<K>(subject)?.iter().filter(|journey| journey.reached.stop.is_none()) {
         let end = &journey.reached.end;
         let there = match &journey.case.goal {
-            Goal::Grasp(q) => end == q,
+            Goal::Grasp(q) => *end == **q,
             Goal::Transfer(X_HO) => end.X_HO == *X_HO,
             Goal::Regrasp { finger, contact, joints } => {
                 end.joints[*finger] == *joints && end.contacts[*finger] == *contact

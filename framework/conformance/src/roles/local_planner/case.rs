@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 /// A target that owns its data.
 #[derive(Clone, Debug)]
 pub(crate) enum Goal {
-    Grasp(Configuration),
+    Grasp(Box<Configuration>),
     Transfer(Pose),
     Regrasp { finger: FingerIndex, contact: Option<Contact>, joints: FingerJoints },
 }
@@ -132,8 +132,7 @@ fn slid(bench: &Bench, from: &Configuration, shift: f64, slide: f64, random: &mu
         let moved = from.contacts[finger].map(|c| bench.surface.walk(&c, &random.direction(), slide));
         contacts[finger] = moved;
     }
-    let near = |q: &Configuration| q.clone();
-    closed(bench, X_HO, &contacts).unwrap_or_else(|| near(from))
+    closed(bench, X_HO, &contacts).unwrap_or_else(|| from.clone())
 }
 
 fn grasps() -> Vec<Case> {
@@ -142,47 +141,41 @@ fn grasps() -> Vec<Case> {
     for (key, bench) in benches().into_iter().enumerate() {
         let from = somewhere(bench, 20 + key as u64);
         let to = slid(bench, &from, 1e-3, 2e-3, &mut random);
-        cases.push(Case { bench, from, goal: Goal::Grasp(to), easy: true });
+        cases.push(Case { bench, from, goal: Goal::Grasp(to.into()), easy: true });
     }
     // Far apart: limits, other fingers or loss of the grasp may be in the way.
     for key in 0..4 {
         let bench = [Bench::free_sphere(), Bench::hand_sphere()][key % 2];
         let (from, to) = (somewhere(bench, 30 + key as u64), somewhere(bench, 40 + key as u64));
-        cases.push(Case { bench, from, goal: Goal::Grasp(to), easy: false });
+        cases.push(Case { bench, from, goal: Goal::Grasp(to.into()), easy: false });
     }
     let free = Bench::free_sphere();
     // Around the back of the finger's box, into another finger, and from a grasp that holds nothing.
-    let [behind, other, _] = around(-1.0);
-    cases.push(Case {
-        bench: free,
-        from: on_ball(free, behind),
-        goal: Goal::Grasp(on_ball(free, other)),
-        easy: false,
-    });
-    let mut low = ring(free);
-    low.X_HO.translation.vector.z -= 0.0;
-    let across = on_ball(free, [[1.0, 0.1, -0.2], [0.75, 0.65, 0.1], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]);
-    let through = on_ball(free, [[0.6, 0.8, -0.1], [1.0, -0.1, 0.1], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]);
-    cases.push(Case { bench: free, from: across, goal: Goal::Grasp(through), easy: false });
+    let [near, far] = around(-1.0);
+    let (from, to) = (on_ball(free, near), on_ball(free, far));
+    cases.push(Case { bench: free, from, goal: Goal::Grasp(to.into()), easy: false });
+    let [beside, through] = [[[1.0, 0.1, -0.2], [0.75, 0.65, 0.1]], [[0.6, 0.8, -0.1], [1.0, -0.1, 0.1]]];
+    let [from, to] =
+        [beside, through].map(|[a, b]| on_ball(free, [a, b, [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]));
+    cases.push(Case { bench: free, from, goal: Goal::Grasp(to.into()), easy: false });
     let (from, shift) = (slack(free), Vec3::new(0.0, 4e-3, 4e-3));
     let to = closed(free, turned(&from.X_HO, shift, Vec3::zeros()), &from.contacts).expect("it is near");
-    cases.push(Case { bench: free, from, goal: Goal::Grasp(to), easy: false });
+    cases.push(Case { bench: free, from, goal: Goal::Grasp(to.into()), easy: false });
     cases
 }
 
 /// Directions of fingertips such that finger 0 passes `side` = ±1 along x on its shortest way from the first set to the second.
 ///
-/// Three fingers hold the ball in the plane of x and z; the third set is where finger 0 ends up.
-fn around(side: f64) -> [[[f64; 3]; 4]; 3] {
+/// The others hold the ball in the plane of x and z.
+fn around(side: f64) -> [[[f64; 3]; 4]; 2] {
     let (near, far) = ([side * 0.45, 0.89, 0.0], [side * 0.45, -0.89, 0.0]);
-    // Behind is the only side on which finger 2 can stand for both.
     let holders = if side < 0.0 {
         [[1.0, 0.0, 0.0], [-0.5, 0.0, 0.87], [-0.5, 0.0, -0.87]]
     } else {
         [[0.5, 0.0, 0.87], [-1.0, 0.0, 0.0], [0.5, 0.0, -0.87]]
     };
     let with = |first: [f64; 3]| [first, holders[0], holders[1], holders[2]];
-    [with(near), with(far), with(far)]
+    [with(near), with(far)]
 }
 
 /// The regrasp of `finger` that leads to the configuration `to`.
@@ -199,7 +192,7 @@ fn regrasps() -> Vec<Case> {
         cases.extend((0..20).find_map(|i| short_regrasp(bench, 50 + 20 * key as u64 + i, &mut random)));
     }
     let (free, walled) = (Bench::free_sphere(), Bench::walled_sphere());
-    let [from, to, _] = around(-1.0).map(|directions| on_ball(free, directions));
+    let [from, to] = around(-1.0).map(|directions| on_ball(free, directions));
     cases.push(regrasp(free, from.clone(), &to, 0, false));
     // To rest and back.
     let mut resting = from.clone();
@@ -208,7 +201,7 @@ fn regrasps() -> Vec<Case> {
     cases.push(regrasp(free, from.clone(), &resting, 0, false));
     cases.push(regrasp(free, resting, &to, 0, false));
     // Between ball and wall, and with a finger that the grasp needs.
-    let [from, to, _] = around(1.0).map(|directions| on_ball(walled, directions));
+    let [from, to] = around(1.0).map(|directions| on_ball(walled, directions));
     cases.push(regrasp(walled, from, &to, 0, false));
     let from = slack(free);
     let to = slid(free, &from, 0.0, 6e-3, &mut random);
