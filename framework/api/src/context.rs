@@ -19,6 +19,9 @@ impl Interrupt for Uninterrupted {
 }
 
 /// Counts of calls and of rejections by cause, for each slot.
+///
+/// A plugin counts its own calls, first thing ([`Context::count_call`] with its slot), so that every caller is counted and none
+/// twice. What is handed no context counts nothing: contact models, and all of a surface but `geodesic`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     calls: [u64; Slot::ALL.len()],
@@ -68,7 +71,7 @@ impl<'a> Context<'a> {
         if self.interrupt.interrupted() { Err(CallError::Interrupted) } else { Ok(()) }
     }
 
-    /// Counts one call of the plugin in `slot`.
+    /// Counts one call of the plugin in `slot`; the plugin itself does, first thing.
     pub fn count_call(&mut self, slot: Slot) {
         self.tally.calls[slot as usize] += 1;
     }

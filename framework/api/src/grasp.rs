@@ -20,6 +20,16 @@ pub enum Cone<'a> {
     Polyhedral(&'a [ConeEdge]),
 }
 
+impl Cone<'_> {
+    /// Whether the contact can transmit a torque about its normal.
+    pub fn carries_torsion(&self) -> bool {
+        match self {
+            Self::Elliptic { gamma, .. } => *gamma != 0.0,
+            Self::Polyhedral(edges) => edges.iter().any(|edge| edge.torsion != 0.0),
+        }
+    }
+}
+
 /// One edge of a polyhedral cone at unit normal force.
 ///
 /// The tangents are `t1 = any_orthogonal(n)` and `t2 = n × t1` with n the contact's *inward* normal.

@@ -1,8 +1,8 @@
 //! The immutable task that all calls of one search share.
 
 use crate::{
-    CallError, Clearance, Configuration, ContactModel, Context, FingerIndex, FingerSet, Grasp, GraspContact,
-    Hand, ObjectModel, Pose, Reason, Resolution, StabilityTest, SurfaceParam, Tolerances, Vec3,
+    CallError, Clearance, Cone, Configuration, Contact, ContactModel, Context, FingerIndex, FingerSet, Grasp,
+    GraspContact, Hand, ObjectModel, Pose, Reason, Resolution, StabilityTest, SurfaceParam, Tolerances, Vec3,
 };
 
 /// The planner's predicate for nodes: collision-free, stable, and easy to leave by transfers and regrasps.
@@ -87,12 +87,31 @@ impl<'a> Task<'a> {
     }
 
     /// The grasp of the fingers in `holding` (those of them that touch) at `q`, with the planning friction.
+    ///
+    /// For what rests: regrasps, start and goals. While the object moves it is [`Task::transfer_grasp`].
     pub fn grasp(&self, q: &Configuration, holding: FingerSet) -> Grasp<'a> {
         let mu = self.planning_friction();
+        self.grasp_with(q, holding, |contact| self.contact_model.cone(contact, mu))
+    }
+
+    /// The same while the object moves: contacts may spin about their normals, and then transmit no torsion.
+    ///
+    /// A transfer, and a path in GS_n that transfers are to follow, is stable where this grasp is.
+    pub fn transfer_grasp(&self, q: &Configuration, holding: FingerSet) -> Grasp<'a> {
+        let mu = self.planning_friction();
+        self.grasp_with(q, holding, |contact| self.contact_model.spinning_cone(contact, mu))
+    }
+
+    fn grasp_with(
+        &self,
+        q: &Configuration,
+        holding: FingerSet,
+        cone: impl Fn(&Contact) -> Cone<'a>,
+    ) -> Grasp<'a> {
         let mut grasp = Grasp::new(q.X_HO.rotation.inverse() * self.g_H);
         for (finger, contact) in q.contacts.iter() {
             if let (Some(contact), true) = (contact, holding.contains(finger)) {
-                let cone = self.contact_model.cone(contact, mu);
+                let cone = cone(contact);
                 grasp.push(GraspContact { finger, p_OC: contact.p_OC, n_O: contact.n_O, cone });
             }
         }

@@ -1,8 +1,8 @@
 //! Which configurations may become nodes.
 
 use regrasp_api::{
-    Admissible, CallError, Configuration, Context, FingerIndex, FingerSet, Grasp, LoneFinger, Reason, Slot, Task,
-    TipRule,
+    Admissible, CallError, Configuration, Context, FingerIndex, FingerSet, Grasp, LoneFinger, Reason, Slot,
+    Task, TipRule,
 };
 
 /// Admits configurations that can be left by transfers and regrasps.
@@ -48,7 +48,11 @@ impl Admissible for Leavable {
         // More contacts never make a grasp unstable: where n - 1 subsets are stable the whole is.
         if task.stability.liftable(&grasp, enough, context)?.len() >= enough.max(1) {
             // At rest; while the object moves, contacts may spin and their torsion is gone.
-            return Ok(if holds_in_transfers(task, q, &grasp, context)? { None } else { Some(Reason::Stability) });
+            return Ok(if holds_in_transfers(task, q, &grasp, context)? {
+                None
+            } else {
+                Some(Reason::Stability)
+            });
         }
         let whole = task.stability.test(&grasp, &mut Default::default(), context)?;
         Ok(Some(if whole.is_stable() { Reason::Liftable } else { Reason::Stability }))

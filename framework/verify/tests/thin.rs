@@ -33,6 +33,7 @@ fn probe(kind: SegmentName, states: &[[f64; 3]], edit: impl FnOnce(&mut Problem)
         name: "probe".into(),
         references: vec![],
         fingertip_radius: 1e-4,
+        fingertip: Default::default(),
         palm: vec![],
         finger: vec![finger],
     };

@@ -24,6 +24,10 @@ impl ContactModel for Guard<dyn ContactModel> {
         self.value(|model| model.cone(contact, mu), || Cone::Elliptic { mu: 0.0, gamma: 0.0 })
     }
 
+    fn spinning_cone(&self, contact: &Contact, mu: f64) -> Cone<'_> {
+        self.value(|model| model.spinning_cone(contact, mu), || Cone::Elliptic { mu: 0.0, gamma: 0.0 })
+    }
+
     fn fewest_contacts(&self) -> usize {
         self.value(|model| model.fewest_contacts(), || MAX_FINGERS)
     }

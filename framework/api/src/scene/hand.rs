@@ -15,11 +15,34 @@ pub struct HandDescription {
     pub references: Vec<String>,
     /// Radius of every fingertip's ball (m).
     pub fingertip_radius: f64,
+    /// What touches the object: the ball itself, or a point.
+    #[serde(default, skip_serializing_if = "Fingertip::is_ball")]
+    pub fingertip: Fingertip,
     /// Shapes fixed to the hand's frame.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub palm: Vec<PlacedShape>,
     /// The fingers, in the order in which everything counts them.
     pub finger: Vec<FingerDescription>,
+}
+
+/// What a fingertip does on the object while the object moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fingertip {
+    /// A ball: it rolls, and the contact moves over both bodies.
+    #[default]
+    Ball,
+    /// A point that stays where it was set down and about which the finger turns freely (the point contact of grasp statics). The ball is its
+    /// collision shape: its centre keeps the place over the object that it had at touch-down, one radius above the contact along the
+    /// surface's normal there. What this neglects is of the order of the radius: a declared point wants a small one.
+    Point,
+}
+
+impl Fingertip {
+    /// Whether the fingertip is a ball that rolls.
+    pub fn is_ball(&self) -> bool {
+        *self == Self::Ball
+    }
 }
 
 /// One finger: a serial chain from the palm to a spherical fingertip.

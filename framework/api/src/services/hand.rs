@@ -1,6 +1,6 @@
 //! Kinematics and limits of the hand.
 
-use crate::{FingerIndex, FingerJoints, JointKind, MAX_FINGER_JOINTS, Rotation, Vec3};
+use crate::{FingerIndex, FingerJoints, Fingertip, JointKind, MAX_FINGER_JOINTS, Rotation, Vec3};
 use nalgebra::SMatrix;
 
 /// A matrix with three rows and a column for each joint; columns beyond the finger's joints are zero.
@@ -65,6 +65,11 @@ pub trait Hand: Send + Sync {
 
     /// Radius of every fingertip's ball (m).
     fn fingertip_radius(&self) -> f64;
+
+    /// What the fingertips do on the object in a transfer: balls roll, points stay.
+    fn fingertip(&self) -> Fingertip {
+        Fingertip::Ball
+    }
 
     /// Centre of the fingertip in H (m).
     fn tip_center(&self, finger: FingerIndex, joints: &FingerJoints) -> Vec3;

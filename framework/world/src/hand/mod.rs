@@ -193,6 +193,10 @@ impl Hand for ChainHand {
         self.description.fingertip_radius
     }
 
+    fn fingertip(&self) -> regrasp_api::Fingertip {
+        self.description.fingertip
+    }
+
     fn tip_center(&self, finger: FingerIndex, joints: &FingerJoints) -> Vec3 {
         self.fingers[finger.index()].chain.tip_center(joints)
     }

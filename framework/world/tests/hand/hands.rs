@@ -56,6 +56,7 @@ pub fn one_finger(mut joints: Vec<JointDescription>, tip: [f64; 3]) -> HandDescr
         name: "one finger".into(),
         references: Vec::new(),
         fingertip_radius: 0.01,
+        fingertip: Default::default(),
         palm: Vec::new(),
         finger: vec![finger],
     }
