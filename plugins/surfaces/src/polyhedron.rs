@@ -28,6 +28,11 @@ pub(crate) struct HalfEdge {
 /// Coordinates of a point in the plane of an edge's frame (m).
 pub(crate) type Planar = [f64; 2];
 
+/// Length of a planar vector: quicker than `hypot`, whose care for overflow lengths of objects do not need.
+pub(crate) fn planar_norm(x: f64, y: f64) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
 impl HalfEdge {
     /// The point `x` (m) along the edge, in O.
     pub fn at(&self, x: f64) -> Vec3 {

@@ -5,7 +5,7 @@
 //! where the straight distance alone would let the search spread over half of the surface.
 
 use crate::closest::ClosestPoints;
-use crate::polyhedron::{HalfEdge, Planar, Polyhedron};
+use crate::polyhedron::{HalfEdge, Planar, Polyhedron, planar_norm};
 use regrasp_api::Vec3;
 
 /// How many facets are asked for the largest ball below them.
@@ -13,7 +13,7 @@ const TRIES: usize = 48;
 /// Meshes with fewer facets are searched faster without balls.
 const FEWEST_FACETS: usize = 100;
 /// Balls are of use only where they lengthen the way by this factor.
-const USEFUL: f64 = 1.002;
+const USEFUL: f64 = 1.02;
 /// Angle (rad) of great circle beyond which a ball's bound is not used: paths from the far side meet there.
 const FARTHEST: f64 = 3.0;
 
@@ -70,9 +70,9 @@ struct Detour {
     ball: Ball,
     /// Unit vector from the ball's centre to the target.
     u_BT: Vec3,
-    /// Straight part next to the target (m), and the angle (rad) that it spans at the centre.
+    /// Straight part next to the target (m), and cosine and sine of the angle that it spans at the centre.
     tangent: f64,
-    spanned: f64,
+    spanned: [f64; 2],
 }
 
 /// What a detour says about one point.
@@ -90,7 +90,7 @@ impl Detour {
         let to = p_OT - ball.p_OB;
         let distance = to.norm().max(ball.radius);
         let tangent = (distance * distance - ball.radius * ball.radius).sqrt();
-        Self { ball, u_BT: to / to.norm(), tangent, spanned: tangent.atan2(ball.radius) }
+        Self { ball, u_BT: to / to.norm(), tangent, spanned: [ball.radius / distance, tangent / distance] }
     }
 
     /// The way around the ball; `None` where the straight way misses the ball, or the ball's far side is reached.
@@ -100,14 +100,21 @@ impl Detour {
         let squared = from.norm_squared();
         let distance = squared.sqrt();
         let tangent = (squared - radius * radius).max(0.0).sqrt();
+        // Angles at the centre: θ from the point to the target, γ spanned by the two straight parts.
         let cos = (from.dot(&self.u_BT) / distance).clamp(-1.0, 1.0);
-        let arc = cos.acos() - (radius / distance).min(1.0).acos() - self.spanned;
-        if arc <= 0.0 || arc >= FARTHEST {
+        let sin = (1.0 - cos * cos).sqrt();
+        let ([ca, sa], [cb, sb]) = ([(radius / distance).min(1.0), tangent / distance], self.spanned);
+        let (cos_sum, sin_sum) = (ca * cb - sa * sb, sa * cb + ca * sb);
+        let (sin_arc, cos_arc) = (sin * cos_sum - cos * sin_sum, cos * cos_sum + sin * sin_sum);
+        if sin_arc <= 0.0 {
+            return None;
+        }
+        let arc = sin_arc.atan2(cos_arc);
+        if arc >= FARTHEST {
             return None;
         }
         let up = from / distance;
-        let around = (self.u_BT - up * cos) / (1.0 - cos * cos).sqrt();
-        let out_O = around * (radius / distance).min(1.0) - up * (tangent / distance);
+        let out_O = (self.u_BT - up * cos) * (ca / sin) - up * sa;
         Some(Way { length: tangent + self.tangent + radius * arc, out_O, arc })
     }
 }
@@ -147,7 +154,7 @@ impl LowerBound {
     pub fn through(&self, frame: &HalfEdge, source: &Planar, ends: [f64; 2], so_far: f64, guess: f64) -> f64 {
         let Some(detour) = &self.detour else { return 0.0 };
         let Some(way) = detour.way(&frame.at(guess)) else { return 0.0 };
-        let here = (guess - source[0]).hypot(source[1]);
+        let here = planar_norm(guess - source[0], source[1]);
         let slope = (guess - source[0]) / here - frame.along_O.dot(&way.out_O);
         let descent = if slope > 0.0 { slope * (guess - ends[0]) } else { -slope * (ends[1] - guess) };
         let width = ends[1] - ends[0];

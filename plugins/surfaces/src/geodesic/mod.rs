@@ -6,6 +6,9 @@
 mod bound;
 mod follow;
 mod lift;
+mod plane;
+mod queue;
+mod search;
 mod trace;
 mod walk;
 mod windows;
@@ -20,10 +23,11 @@ use regrasp_api::{
     SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, Waypoint, check_range, check_settings, inventory,
 };
 use schemars::JsonSchema;
+use search::Search;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use trace::Leg;
-use windows::{Scratch, Search, Site};
+use windows::{Scratch, Site};
 
 inventory::submit! {
     Entry {
@@ -189,7 +193,7 @@ impl SurfaceParam for Geodesic {
             trace::trace(&self.polyhedron, search, &found, &to.p_OC, legs);
             lift::lift(&self.polyhedron, self.radius, from, to, legs, path);
             path.length = found.length;
-            Ok(self.polyhedron.convex || self.follower().follow(path, rolled))
+            Ok(self.polyhedron.convex || self.radius == 0.0 || self.follower().follow(path, rolled))
         })
     }
 

@@ -1,6 +1,7 @@
 //! From the windows of a search back to the path's points.
 
-use super::windows::{Arrival, Found, Parent, Scratch, cross};
+use super::plane::cross;
+use super::windows::{Arrival, Found, Parent, Scratch};
 use crate::polyhedron::{Planar, Polyhedron, next, previous};
 use regrasp_api::Vec3;
 

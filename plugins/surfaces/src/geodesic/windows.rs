@@ -1,25 +1,11 @@
-//! Exact shortest paths: windows of straight rays, unfolded facet by facet and led towards the target.
-//!
-//! A window is the part of an edge that straight lines from one source reach through one strip of unfolded facets
-//! (Mitchell, Mount & Papadimitriou, "The discrete geodesic problem", SIAM J. Comput. 1987; Chen & Han, "Shortest paths
-//! on a polyhedron", SoCG 1990). Windows leave a priority queue as in Xin & Wang, "Improving Chen and Han's algorithm on
-//! the discrete geodesic problem", ACM TOG 2009, with two departures for paths between two points: the key is the length
-//! so far plus a lower bound of the rest (A*), and a window that cannot shorten the best path by more than the relative
-//! tolerance is dropped. Shortest paths bend at saddle vertices only; those become sources of the region behind them.
+//! What a search for a shortest path keeps: windows, sources, labels of vertices.
 
-use super::bound::LowerBound;
-use crate::polyhedron::{HalfEdge, Place, Planar, Polyhedron, next, previous};
-use regrasp_api::{CallError, Context, Vec3};
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
-use std::f64::consts::{PI, TAU};
+use super::queue::Queue;
+use crate::polyhedron::{Place, Planar};
+use regrasp_api::Vec3;
 
 /// Tells indices of sources (and, in the queue, of vertices) from those of windows.
-const FLAG: u32 = 1 << 31;
-/// Windows between two questions whether to stop.
-const STRIDE: usize = 1024;
-/// Slack in lengths (m) against rounding.
-const ROUNDING: f64 = 1e-13;
+pub(super) const FLAG: u32 = 1 << 31;
 
 /// Where a straight piece of a path comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,13 +20,13 @@ pub(super) enum Arrival {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
     pub half_edge: u32,
-    parent: u32,
+    pub parent: u32,
     /// Ends of the part along the half-edge (m).
-    ends: [f64; 2],
+    pub ends: [f64; 2],
     /// The source, unfolded into the half-edge's frame (m); below the edge.
     pub source: Planar,
     /// Length of the path to the source (m).
-    so_far: f64,
+    pub so_far: f64,
 }
 
 impl Window {
@@ -74,47 +60,26 @@ pub(super) struct Source {
 
 /// The best known way to a vertex.
 #[derive(Clone, Copy, Debug)]
-struct Label {
-    epoch: u64,
-    length: f64,
-    arrival: Arrival,
+pub(super) struct Label {
+    /// The search that wrote it.
+    pub epoch: u64,
+    pub length: f64,
+    pub arrival: Arrival,
 }
-const UNKNOWN: Label = Label { epoch: 0, length: f64::INFINITY, arrival: Arrival::Window(0) };
-
-#[derive(Clone, Copy, Debug)]
-struct Queued {
-    key: f64,
-    index: u32,
-}
-impl PartialEq for Queued {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Queued {}
-impl PartialOrd for Queued {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Queued {
-    // The smallest key is the greatest; ties by index keep the order the same on every run.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.key.total_cmp(&self.key).then(other.index.cmp(&self.index))
-    }
-}
+pub(super) const UNKNOWN: Label = Label { epoch: 0, length: f64::INFINITY, arrival: Arrival::Window(0) };
 
 /// Memory of a search, kept between calls; nothing of one call shows in the next.
 #[derive(Default)]
 pub(super) struct Scratch {
     pub windows: Vec<Window>,
     pub sources: Vec<Source>,
-    queue: BinaryHeap<Queued>,
-    labels: Vec<Label>,
-    epoch: u64,
-    /// Facets that hold the start, and those that hold the target.
-    start_facets: Vec<u32>,
-    target_facets: Vec<u32>,
+    pub queue: Queue,
+    pub labels: Vec<Label>,
+    pub epoch: u64,
+    /// Facets that hold the start.
+    pub start_facets: Vec<u32>,
+    /// Facets that hold the target.
+    pub target_facets: Vec<u32>,
 }
 
 /// A point with the facet it was given with and its place.
@@ -129,333 +94,4 @@ pub(super) struct Site {
 pub(super) struct Found {
     pub length: f64,
     pub last: Arrival,
-}
-
-/// One search from a start to a target.
-pub(super) struct Search<'a> {
-    polyhedron: &'a Polyhedron,
-    scratch: &'a mut Scratch,
-    bound: LowerBound,
-    p_OT: Vec3,
-    tolerance: f64,
-    /// Windows at or above this length (m) are dropped.
-    limit: f64,
-    best: Option<Found>,
-}
-
-impl<'a> Search<'a> {
-    /// Prepares a search; `known` is the length (m) of some path, infinite if none is known.
-    pub fn new(
-        polyhedron: &'a Polyhedron,
-        scratch: &'a mut Scratch,
-        bound: LowerBound,
-        target: &Site,
-        tolerance: f64,
-        known: f64,
-    ) -> Self {
-        scratch.windows.clear();
-        scratch.sources.clear();
-        scratch.queue.clear();
-        scratch.epoch += 1;
-        if scratch.labels.len() < polyhedron.outgoing.len() {
-            scratch.labels.resize(polyhedron.outgoing.len(), UNKNOWN);
-        }
-        scratch.start_facets.clear();
-        scratch.target_facets.clear();
-        polyhedron.facets_at(target.place, |facet| scratch.target_facets.push(facet));
-        let limit = known * (1.0 - tolerance);
-        Self { polyhedron, scratch, bound, p_OT: target.p_OP, tolerance, limit, best: None }
-    }
-
-    /// The shortest path from `start` if it is shorter than the known one by more than the tolerance.
-    pub fn run(mut self, start: &Site, context: &Context<'_>) -> Result<Option<Found>, CallError> {
-        self.spread_start(start);
-        let mut count = 0;
-        while let Some(Queued { key, index }) = self.scratch.queue.pop() {
-            if key >= self.limit {
-                break;
-            }
-            count += 1;
-            if count % STRIDE == 0 {
-                context.proceed()?;
-            }
-            if index & FLAG == 0 {
-                self.spread_window(index);
-            } else {
-                self.spread_vertex(index & !FLAG, key);
-            }
-        }
-        Ok(self.best)
-    }
-
-    fn offer(&mut self, length: f64, last: Arrival) {
-        if length < self.limit {
-            self.best = Some(Found { length, last });
-            self.limit = length * (1.0 - self.tolerance);
-        }
-    }
-
-    fn spread_start(&mut self, start: &Site) {
-        let polyhedron = self.polyhedron;
-        polyhedron.facets_at(start.place, |facet| self.scratch.start_facets.push(facet));
-        let source = self.add_source(Source { p_OS: start.p_OP, length: 0.0, before: None });
-        for index in 0..self.scratch.start_facets.len() {
-            let facet = self.scratch.start_facets[index];
-            if self.scratch.target_facets.contains(&facet) {
-                self.offer((start.p_OP - self.p_OT).norm(), Arrival::Source(source, facet));
-            }
-            for edge in 3 * facet..3 * facet + 3 {
-                let vertex = polyhedron.half_edges[edge as usize].vertex;
-                self.label(vertex, &start.p_OP, 0.0, Arrival::Source(source, facet));
-                self.open(edge, source, 0.0..=f64::INFINITY);
-            }
-        }
-    }
-
-    /// Opens the window of a source through an edge of a facet that holds the source; `part` limits it, from the edge's
-    /// first vertex (m).
-    fn open(&mut self, edge: u32, source: u32, part: std::ops::RangeInclusive<f64>) {
-        let Source { p_OS, length, .. } = self.scratch.sources[source as usize];
-        let twin = self.polyhedron.half_edges[edge as usize].twin;
-        let frame = &self.polyhedron.half_edges[twin as usize];
-        let [x, y] = frame.unfold(&p_OS);
-        if y < self.polyhedron.snap {
-            return; // the source lies on this edge: its other facet is in the star too
-        }
-        let ends = [(frame.length - part.end()).max(0.0), frame.length - part.start().max(0.0)];
-        self.push(Window { half_edge: twin, parent: source | FLAG, ends, source: [x, -y], so_far: length });
-    }
-
-    fn add_source(&mut self, source: Source) -> u32 {
-        self.scratch.sources.push(source);
-        (self.scratch.sources.len() - 1) as u32
-    }
-
-    /// Queues a window unless it is useless; one that enters the target's facet ends there.
-    fn push(&mut self, window: Window) {
-        let frame = &self.polyhedron.half_edges[window.half_edge as usize];
-        let facet = window.half_edge / 3;
-        let target = frame.unfold(&self.p_OT);
-        let crossing = cross(&window.source, &target);
-        let clamped = crossing.clamp(window.ends[0], window.ends[1]);
-        let straight = window.so_far
-            + (clamped - window.source[0]).hypot(window.source[1])
-            + (clamped - target[0]).hypot(target[1]);
-        if straight >= self.limit {
-            return;
-        }
-        if self.scratch.target_facets.contains(&facet) {
-            if (crossing - clamped).abs() <= 10.0 * self.polyhedron.snap {
-                let last = Arrival::Window(self.add(window));
-                self.offer(straight, last);
-            }
-            return;
-        }
-        if self.is_dominated(frame, &window) || self.scratch.start_facets.contains(&facet) {
-            return;
-        }
-        let key =
-            straight.max(self.bound.through(frame, &window.source, window.ends, window.so_far, clamped));
-        if key < self.limit {
-            let index = self.add(window);
-            self.scratch.queue.push(Queued { key, index });
-        }
-    }
-
-    fn add(&mut self, window: Window) -> u32 {
-        self.scratch.windows.push(window);
-        (self.scratch.windows.len() - 1) as u32
-    }
-
-    /// Whether a known path to an end of the edge, continued along the edge, beats the window everywhere (Xin & Wang 2009,
-    /// section 3.2).
-    fn is_dominated(&self, frame: &HalfEdge, window: &Window) -> bool {
-        let [b0, b1] = window.ends;
-        let [x, y] = window.source;
-        let head = self.polyhedron.half_edges[next(window.half_edge) as usize].vertex;
-        let by_tail = self.known(frame.vertex) + b1 + ROUNDING < window.so_far + (b1 - x).hypot(y);
-        by_tail || self.known(head) + (frame.length - b0) + ROUNDING < window.so_far + (b0 - x).hypot(y)
-    }
-
-    fn known(&self, vertex: u32) -> f64 {
-        let label = &self.scratch.labels[vertex as usize];
-        if label.epoch == self.scratch.epoch { label.length } else { f64::INFINITY }
-    }
-
-    /// Notes a way to a vertex; a shorter one to a saddle makes it a source.
-    fn label(&mut self, vertex: u32, p_OS: &Vec3, so_far: f64, arrival: Arrival) {
-        let length = so_far + (self.position(vertex) - p_OS).norm();
-        self.label_at(vertex, length, arrival);
-    }
-
-    fn label_at(&mut self, vertex: u32, length: f64, arrival: Arrival) {
-        if length >= self.known(vertex) {
-            return;
-        }
-        let epoch = self.scratch.epoch;
-        self.scratch.labels[vertex as usize] = Label { epoch, length, arrival };
-        if self.polyhedron.is_saddle(vertex) {
-            let key = length + self.bound.of_point(&self.position(vertex));
-            if key < self.limit {
-                self.scratch.queue.push(Queued { key, index: vertex | FLAG });
-            }
-        }
-    }
-
-    fn position(&self, vertex: u32) -> Vec3 {
-        self.polyhedron.mesh.vertices()[vertex as usize]
-    }
-
-    /// Sends a window through its facet to the two other edges.
-    fn spread_window(&mut self, index: u32) {
-        let window = self.scratch.windows[index as usize];
-        let frame = &self.polyhedron.half_edges[window.half_edge as usize];
-        let ([ax, ay], [ix, iy]) = (frame.apex, window.source);
-        // Positive where the apex lies to the left of the ray through an end.
-        let side = |b: f64| (b - ix) * (ay - iy) + iy * (ax - ix);
-        let (left_of_first, left_of_last) = (side(window.ends[0]), side(window.ends[1]));
-        let margin = 1e-9 * (ay - iy) * frame.length;
-        if left_of_first < margin && left_of_last > -margin {
-            let length = window.so_far + (ax - ix).hypot(ay - iy);
-            self.label_at(self.polyhedron.apex(window.half_edge), length, Arrival::Window(index));
-        }
-        if left_of_last > 0.0 {
-            self.through_right(index, &window, frame, left_of_first < 0.0);
-        }
-        if left_of_first < 0.0 {
-            self.through_left(index, &window, frame, left_of_last > 0.0);
-        }
-    }
-
-    /// Continues through the edge from the frame's head to the apex; `split` where the apex cuts the window.
-    fn through_right(&mut self, index: u32, window: &Window, frame: &HalfEdge, split: bool) {
-        let edge = next(window.half_edge);
-        let out = self.polyhedron.half_edges[edge as usize];
-        let [ax, ay] = frame.apex;
-        // The far side's frame starts at the apex and runs to the head.
-        let turn = [(frame.length - ax) / out.length, -ay / out.length];
-        let local = |[x, y]: Planar| rotate(&turn, [x - ax, y - ay]);
-        let source = local(window.source);
-        let first = if split { 0.0 } else { exit(&source, &local([window.ends[0], 0.0]), out.length) };
-        let last = exit(&source, &local([window.ends[1], 0.0]), out.length);
-        self.push_child(index, window, out.twin, source, [first, last]);
-    }
-
-    /// Continues through the edge from the apex to the frame's tail; `split` where the apex cuts the window.
-    fn through_left(&mut self, index: u32, window: &Window, frame: &HalfEdge, split: bool) {
-        let edge = previous(window.half_edge);
-        let out = self.polyhedron.half_edges[edge as usize];
-        // The far side's frame starts at the tail and runs to the apex.
-        let turn = [frame.apex[0] / out.length, frame.apex[1] / out.length];
-        let source = rotate(&turn, window.source);
-        let first = exit(&source, &rotate(&turn, [window.ends[0], 0.0]), out.length);
-        let last =
-            if split { out.length } else { exit(&source, &rotate(&turn, [window.ends[1], 0.0]), out.length) };
-        self.push_child(index, window, out.twin, source, [first, last]);
-    }
-
-    fn push_child(&mut self, parent: u32, window: &Window, half_edge: u32, source: Planar, ends: [f64; 2]) {
-        if ends[1] > ends[0] {
-            self.push(Window { half_edge, parent, ends, source, so_far: window.so_far });
-        }
-    }
-
-    /// Makes a saddle vertex the source of the facets that straight rays cannot reach past it.
-    fn spread_vertex(&mut self, vertex: u32, key: f64) {
-        let Label { length, arrival, .. } = self.scratch.labels[vertex as usize];
-        let p_OV = self.position(vertex);
-        if key > length + self.bound.of_point(&p_OV) + ROUNDING {
-            return; // a shorter way was found after this one was queued
-        }
-        let back = self.direction_back(vertex, arrival);
-        let source = self.add_source(Source { p_OS: p_OV, length, before: Some(arrival) });
-        let total = self.polyhedron.total_angle[vertex as usize];
-        let polyhedron = self.polyhedron;
-        for outgoing in polyhedron.star(vertex) {
-            let arrival = Arrival::Source(source, outgoing / 3);
-            if self.scratch.target_facets.contains(&(outgoing / 3)) {
-                self.offer(length + (p_OV - self.p_OT).norm(), arrival);
-            }
-            let neighbor = polyhedron.half_edges[next(outgoing) as usize].vertex;
-            self.label(neighbor, &p_OV, length, arrival);
-            // Relative to the way back, shortest paths leave between π and total - π.
-            let frame = &polyhedron.half_edges[outgoing as usize];
-            let from = (polyhedron.direction[outgoing as usize] - back).rem_euclid(total);
-            let to = from + frame.apex[1].atan2(frame.apex[0]);
-            let (low, high) = (from.max(PI), to.min(total - PI));
-            if low < high + 1e-12 {
-                let part = part_of_opposite(frame, low - from, high - from);
-                self.open(next(outgoing), source, part);
-            }
-        }
-    }
-
-    /// Direction (rad, in the vertex's star) from which the path to the vertex comes.
-    fn direction_back(&self, vertex: u32, arrival: Arrival) -> f64 {
-        match arrival {
-            Arrival::Window(index) => {
-                let window = &self.scratch.windows[index as usize];
-                let outgoing = previous(window.half_edge);
-                let frame = &self.polyhedron.half_edges[window.half_edge as usize];
-                let ([ax, ay], [ix, iy]) = (frame.apex, window.source);
-                let (to_tail, to_source) = ((-ay).atan2(-ax), (iy - ay).atan2(ix - ax));
-                self.polyhedron.direction[outgoing as usize] + (to_source - to_tail).rem_euclid(TAU)
-            }
-            Arrival::Source(source, _) => {
-                self.direction_to(vertex, &self.scratch.sources[source as usize].p_OS)
-            }
-        }
-    }
-
-    /// Direction of a point that lies in one of the facets around the vertex.
-    fn direction_to(&self, vertex: u32, p_OP: &Vec3) -> f64 {
-        let to = p_OP - self.position(vertex);
-        let angle_in = |outgoing: u32| {
-            let frame = &self.polyhedron.half_edges[outgoing as usize];
-            let inward = self.polyhedron.mesh.normal(outgoing / 3).cross(&frame.along_O);
-            let off_plane = self.polyhedron.mesh.normal(outgoing / 3).dot(&to).abs();
-            let angle = inward.dot(&to).atan2(frame.along_O.dot(&to));
-            let corner = frame.apex[1].atan2(frame.apex[0]);
-            let outside = (-angle).max(angle - corner).max(0.0) * to.norm() + off_plane;
-            (outside, self.polyhedron.direction[outgoing as usize] + angle.clamp(0.0, corner))
-        };
-        self.polyhedron
-            .star(vertex)
-            .map(angle_in)
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map_or(0.0, |(_, direction)| direction)
-    }
-}
-
-/// The part of the edge opposite to a frame's origin between two directions (rad) from the frame's edge, in metres from
-/// the frame's head.
-fn part_of_opposite(frame: &HalfEdge, low: f64, high: f64) -> std::ops::RangeInclusive<f64> {
-    let [ax, ay] = frame.apex;
-    let (dx, dy) = (ax - frame.length, ay);
-    let length = dx.hypot(dy);
-    let hit = |angle: f64| {
-        let (sin, cos) = angle.sin_cos();
-        // (length + t dx, t dy) is parallel to (cos, sin).
-        let t = frame.length * sin / (dy * cos - dx * sin);
-        t.clamp(0.0, 1.0) * length
-    };
-    hit(low)..=hit(high)
-}
-
-/// Where the segment between a point below an edge's line and one above crosses it (m along the edge).
-pub(super) fn cross(below: &Planar, above: &Planar) -> f64 {
-    let height = above[1] - below[1];
-    if height > 0.0 { below[0] + (above[0] - below[0]) * (-below[1] / height) } else { above[0] }
-}
-
-/// Where the ray from `source` through `via` leaves through the line y = 0, clamped to the edge.
-fn exit(source: &Planar, via: &Planar, length: f64) -> f64 {
-    let rise = via[1] - source[1];
-    let x = if rise > 0.0 { source[0] + (via[0] - source[0]) * (-source[1] / rise) } else { via[0] };
-    x.clamp(0.0, length)
-}
-
-/// A vector in a frame whose x axis is `axis`.
-fn rotate(axis: &Planar, v: Planar) -> Planar {
-    [axis[0] * v[0] + axis[1] * v[1], axis[0] * v[1] - axis[1] * v[0]]
 }
