@@ -23,6 +23,7 @@ pub enum Command {
     Plugins(PluginsArgs),
     Scenarios(ScenariosArgs),
     Schema(SchemaArgs),
+    NewPlugin(NewPluginArgs),
 }
 
 /// Plan a scenario, verify the plan, and write it to a file.
@@ -112,6 +113,22 @@ pub struct ScenariosArgs {
     /// Print a JSON list instead of text.
     #[arg(long, conflicts_with = "name")]
     pub json: bool,
+}
+
+/// Write a crate with a plugin of your own: a working one to start from, its test, and the library to load.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  regrasp new-plugin sampler mine && cd mine-sampler && cargo test")]
+pub struct NewPluginArgs {
+    /// The plugin's role: contact-model, stability-test, surface, sampler, local-planner or graph-strategy.
+    pub role: String,
+    /// The plugin's name, in kebab case; its id is ROLE/NAME.
+    pub name: String,
+    /// A checkout of the framework to build against; by default the one that this program was built from.
+    #[arg(long, value_name = "PATH")]
+    pub framework: Option<PathBuf>,
+    /// Write to this folder; by default NAME-ROLE.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
 }
 
 /// Print the JSON schema of scenario files or of hand files.

@@ -4,6 +4,7 @@
 
 mod args;
 mod failure;
+mod new_plugin;
 mod overrides;
 mod plan;
 mod plugins;
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
         Command::Plugins(args) => plugins::run(args),
         Command::Scenarios(args) => scenarios::run(args),
         Command::Schema(args) => schema::run(args),
+        Command::NewPlugin(args) => new_plugin::run(args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
