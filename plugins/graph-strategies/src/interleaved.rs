@@ -8,6 +8,7 @@
 //! Source: A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007,
 //! section IV.
 
+use crate::nearest::{join_ends, nearest_of_each_component};
 use regrasp_api::{
     Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, NodeId, Settings,
     SettingsError, Slot, check_range, check_settings, inventory,
@@ -83,17 +84,6 @@ impl GraphStrategy for Interleaved {
     }
 }
 
-/// Start and goals enter the graph as new nodes do: by a path in GS_n to each component that has not been tried yet.
-fn join_ends(graph: &dyn GraphView) -> Option<Action> {
-    let ends = std::iter::once(graph.start()).chain(graph.goals().iter().copied());
-    let untried = |end: NodeId| {
-        nearest_of_each_component(graph, end)
-            .into_iter()
-            .find(|&near| !graph.attempted(end, near, EdgeKind::Grasp))
-    };
-    ends.filter_map(|end| untried(end).map(|near| Action::Connect(end, near, EdgeKind::Grasp))).next()
-}
-
 /// A random node and the nearest node of another component that was not tried with it.
 fn pair_to_connect(graph: &dyn GraphView, context: &mut Context<'_>) -> Option<(NodeId, NodeId)> {
     let node = NodeId(context.random.index(graph.node_count()) as u32);
@@ -102,24 +92,6 @@ fn pair_to_connect(graph: &dyn GraphView, context: &mut Context<'_>) -> Option<(
         .filter(|&other| !graph.attempted(node, other, EdgeKind::TransferRegrasp))
         .min_by(|&a, &b| graph.distance(node, a).total_cmp(&graph.distance(node, b)));
     closest.map(|other| (node, other))
-}
-
-/// The node nearest to `node` in each component but its own, components in ascending order.
-fn nearest_of_each_component(graph: &dyn GraphView, node: NodeId) -> Vec<NodeId> {
-    let own = graph.component(node);
-    let mut best: Vec<Option<(f64, NodeId)>> = vec![None; graph.node_count()];
-    for other in (0..graph.node_count() as u32).map(NodeId) {
-        let component = graph.component(other);
-        if component == own {
-            continue;
-        }
-        let distance = graph.distance(node, other);
-        let place = &mut best[component.0 as usize];
-        if place.is_none_or(|(least, _)| distance < least) {
-            *place = Some((distance, other));
-        }
-    }
-    best.into_iter().flatten().map(|(_, nearest)| nearest).collect()
 }
 
 inventory::submit! {
