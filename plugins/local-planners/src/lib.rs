@@ -1,13 +1,19 @@
-//! The built-in local planners: `linear` inside GS_n, `rolling` for transfers, `rrt` for regrasps.
+//! The built-in local planners: `linear` inside GS_n; `rolling` and `fixed-point` for transfers; `rrt` and `lift-slide-touch` for regrasps.
 //!
 //! Each connects two configurations inside one kind of subspace (Sahbani, Saut, Perdereau, "An efficient algorithm for
 //! dexterous manipulation planning", SSD 2007, section IV).
 
 mod common;
+pub mod fixed_point;
+pub mod lift_slide_touch;
 pub mod linear;
+mod regrasp;
 pub mod rolling;
 pub mod rrt;
+mod transfer;
 
+pub use fixed_point::{FixedPoint, FixedPointSettings};
+pub use lift_slide_touch::{LiftSlideTouch, LiftSlideTouchSettings};
 pub use linear::{Linear, LinearSettings};
 pub use rolling::{Rolling, RollingSettings};
 pub use rrt::{Rrt, RrtSettings};

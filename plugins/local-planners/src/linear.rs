@@ -76,6 +76,7 @@ impl LocalPlanner for Linear {
         mut path: Option<&mut Path>,
         context: &mut Context<'_>,
     ) -> Result<Reached, CallError> {
+        context.count_call(SLOT);
         let Target::Grasp(to) = to else { return Err(wrong_target(ID, SLOT)) };
         if let Some(path) = path.as_deref_mut() {
             path.restart(from);
@@ -228,6 +229,8 @@ fn push_between(
 }
 
 /// What is wrong with a closed configuration: stability first, because it costs less than collision.
+///
+/// Transfers are to follow the path, so the grasp must hold as it does in a transfer.
 fn fault(
     task: &Task<'_>,
     q: &Configuration,
@@ -235,7 +238,7 @@ fn fault(
     context: &mut Context<'_>,
 ) -> Result<Option<Reason>, CallError> {
     let holding = q.holding();
-    if !task.stability.test(&task.grasp(q, holding), hint, context)?.is_stable() {
+    if !task.stability.test(&task.transfer_grasp(q, holding), hint, context)?.is_stable() {
         return Ok(Some(Reason::Stability));
     }
     let all = q.joints.fingers().collect();

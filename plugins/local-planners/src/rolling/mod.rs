@@ -1,15 +1,14 @@
 //! `local-planner/rolling`: the object moves straight, the fingertips roll on it without slip.
 
-mod constraint;
-mod motion;
+pub(crate) mod constraint;
 mod span;
 mod step;
 
 use crate::common::{Levers, largest_travel, wrong_target};
-use motion::Motion;
+use crate::transfer::{Motion, Pace, demand_fingertip};
 use regrasp_api::{
-    Build, CallError, Configuration, Context, Entry, Hand, Hint, LocalPlanner, Path, Pose, Reached, Reason,
-    Settings, SettingsError, Slot, Target, Task, check_count, check_range, check_settings,
+    Build, CallError, Configuration, Context, Entry, Fingertip, Hand, Hint, LocalPlanner, Path, Pose,
+    Reached, Reason, Settings, SettingsError, Slot, Target, Task, check_count, check_range, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -52,6 +51,8 @@ impl Settings for RollingSettings {
 /// normal onto the offset surface, so that closure does not drift; steps are halved until the interpolated motion keeps its
 /// share of the tolerances.
 ///
+/// The fingertips are balls: a hand that declares points is refused when the plugin is built from its entry.
+///
 /// Stops at the last valid state: at a joint's limit, out of reach or at a singularity (`reach`), at a collision, where the grasp is no
 /// longer stable, where net slip at a state uses up its share (within a step the tip may stray along the surface by as much as closure
 /// allows across it), and where a contact is lost or jumps on a concave edge (`closure`).
@@ -92,6 +93,7 @@ impl LocalPlanner for Rolling {
         mut path: Option<&mut Path>,
         context: &mut Context<'_>,
     ) -> Result<Reached, CallError> {
+        context.count_call(SLOT);
         let Target::Transfer(to) = to else { return Err(wrong_target(ID, SLOT)) };
         if let Some(path) = path.as_deref_mut() {
             path.restart(from);
@@ -130,7 +132,7 @@ fn obstacle(
     if let Err(reason) = step(roller, state, next, pace) {
         return Ok(Some(reason));
     }
-    if !task.stability.test(&task.grasp(&next.q, *holding), hint, context)?.is_stable() {
+    if !task.stability.test(&task.transfer_grasp(&next.q, *holding), hint, context)?.is_stable() {
         return Ok(Some(Reason::Stability));
     }
     let free = task.clearance.configuration_free(&next.q, *holding, true);
@@ -154,32 +156,6 @@ fn step(roller: &Roller<'_>, state: &State, next: &mut State, pace: &mut Pace) -
     Err(Reason::Closure)
 }
 
-/// How long steps are: halved where the contacts bend, doubled again behind.
-struct Pace {
-    full: f64,
-    finest: f64,
-    now: f64,
-}
-
-impl Pace {
-    fn new(full: f64, halvings: usize) -> Self {
-        Self { full, finest: full * 0.5_f64.powi(halvings as i32), now: full }
-    }
-
-    /// The next step's length, at most `longest`; what remains is divided evenly, so that no splinter is left over.
-    fn next(&mut self, longest: f64, remains: f64) -> f64 {
-        let longest = self.now.max(self.finest).min(longest);
-        self.now = (2.0 * self.now).min(self.full);
-        remains / (remains / longest - 1e-9).ceil().max(1.0)
-    }
-
-    /// Half of `h`, to be kept to for the next step too.
-    fn halve(&mut self, h: f64) -> f64 {
-        self.now = 0.5 * h;
-        self.now
-    }
-}
-
 regrasp_api::inventory::submit! {
     Entry {
         id: ID,
@@ -194,6 +170,7 @@ regrasp_api::inventory::submit! {
         schema: RollingSettings::schema,
         check: check_settings::<RollingSettings>,
         build: Build::LocalPlanner(|json, parts| {
+            demand_fingertip(ID, Fingertip::Ball, parts.hand)?;
             Ok(Box::new(Rolling::new(RollingSettings::from_json(json)?, parts.hand)?))
         }),
     }

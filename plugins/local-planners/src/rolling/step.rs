@@ -1,7 +1,8 @@
 //! One step of rolling: the midpoint rule, removal of drift, net slip.
 
-use super::{constraint::ContactJacobian, motion::Motion, span::Span};
+use super::{constraint::ContactJacobian, span::Span};
 use crate::common::Levers;
+use crate::transfer::Motion;
 use regrasp_api::{
     Configuration, Contact, FingerIndex, FingerJoints, FingerSet, PerFinger, Pose, Reason, Rotation, Task,
     TipKinematics, Vec3,

@@ -1,6 +1,7 @@
 //! Two random trees that grow towards each other in the joint space of one finger (Kuffner & LaValle, ICRA 2000).
 
-use super::{RrtSettings, Scratch, flight::Flight};
+use super::RrtSettings;
+use crate::regrasp::Flight;
 use regrasp_api::{CallError, Context, FingerJoints, Random};
 
 #[derive(Clone, Copy)]
@@ -27,24 +28,6 @@ enum Growth {
     Reached(usize),
 }
 
-/// Appends a way from `a`, without it, to `b` to the scratch's postures; false if none was found within the budget.
-pub(crate) fn search(
-    flight: &Flight<'_>,
-    settings: &RrtSettings,
-    (a, b): (&FingerJoints, &FingerJoints),
-    scratch: &mut Scratch,
-    context: &mut Context<'_>,
-) -> Result<bool, CallError> {
-    let Scratch { trees, postures, .. } = scratch;
-    trees.restart(a, b);
-    if settings.nodes == 0 || !trees.meet(flight, settings, context)? {
-        return Ok(false);
-    }
-    trees.shorten(flight, settings, &mut context.random);
-    let legs = trees.route.windows(2);
-    Ok(legs.into_iter().all(|leg| flight.straight(&leg[0], &leg[1], postures).is_ok()))
-}
-
 /// How coarsely edges are looked at while the trees grow (m of travel); the final way is looked at again, finely.
 fn stride(flight: &Flight<'_>) -> f64 {
     2.0 * flight.task.resolution.regrasp_step
@@ -58,6 +41,23 @@ fn random_posture(flight: &Flight<'_>, random: &mut Random) -> FingerJoints {
 }
 
 impl Trees {
+    /// Appends a way from `a`, without it, to `b` to the postures; false if none was found within the budget.
+    pub fn search(
+        &mut self,
+        flight: &Flight<'_>,
+        settings: &RrtSettings,
+        (a, b): (&FingerJoints, &FingerJoints),
+        postures: &mut Vec<FingerJoints>,
+        context: &mut Context<'_>,
+    ) -> Result<bool, CallError> {
+        self.restart(a, b);
+        if settings.nodes == 0 || !self.meet(flight, settings, context)? {
+            return Ok(false);
+        }
+        self.shorten(flight, settings, &mut context.random);
+        Ok(self.route.windows(2).all(|leg| flight.straight(&leg[0], &leg[1], postures).is_ok()))
+    }
+
     fn restart(&mut self, a: &FingerJoints, b: &FingerJoints) {
         for (side, root) in self.sides.iter_mut().zip([a, b]) {
             side.clear();
