@@ -111,6 +111,23 @@ impl ScaledGrasp {
         Ok(scaled)
     }
 
+    /// The contacts of `grasp` except those of `lifted`, whatever their cones: a polyhedral one is put down as frictionless.
+    pub fn gather_points(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Self {
+        let nothing = ScaledContact { r: Vec3::zeros(), n: Vec3::zeros(), mu: 0.0, gamma: 0.0 };
+        let mut scaled =
+            Self { contacts: [nothing; MAX_FINGERS], count: 0, center_O: Vec3::zeros(), length: 1.0 };
+        for contact in grasp.contacts().iter().filter(|contact| Some(contact.finger) != lifted) {
+            let (mu, gamma) = match contact.cone {
+                Cone::Elliptic { mu, gamma } => (mu, gamma),
+                Cone::Polyhedral(_) => (0.0, 0.0),
+            };
+            scaled.contacts[scaled.count] = ScaledContact { r: contact.p_OC, n: -contact.n_O, mu, gamma };
+            scaled.count += 1;
+        }
+        scaled.normalise();
+        scaled
+    }
+
     /// The contacts.
     #[inline]
     pub fn contacts(&self) -> &[ScaledContact] {

@@ -60,7 +60,11 @@ impl ForceClosure {
         Ok(Self { tau: settings.undecided_margin })
     }
 
-    fn decide(&self, grasp: &ScaledGrasp, hint: &mut Hint) -> Stability {
+    pub(crate) fn undecided_margin(&self) -> f64 {
+        self.tau
+    }
+
+    pub(crate) fn decide(&self, grasp: &ScaledGrasp, hint: &mut Hint) -> Stability {
         // Balance alone takes six independent components.
         if grasp.components() <= 6 {
             return Stability::Unstable;
@@ -72,7 +76,12 @@ impl ForceClosure {
         recall(&search, hint).unwrap_or_else(|| remember(search.run(), hint))
     }
 
-    fn certify(&self, grasp: &ScaledGrasp, frame: &Frame, stability: Stability) -> (f64, f64, Certificate) {
+    pub(crate) fn certify(
+        &self,
+        grasp: &ScaledGrasp,
+        frame: &Frame,
+        stability: Stability,
+    ) -> (f64, f64, Certificate) {
         let search = Search::new(grasp, self.tau);
         match (stability, search.run()) {
             (Stability::Stable, Outcome::Closed(w)) => {

@@ -1,9 +1,16 @@
-//! Built-in stability tests: exact force closure, and the conic program that it is checked against.
+//! Built-in stability tests: exact force closure, the conic program that it is checked against, cones of edges, the wrench ball, equilibrium.
 
 mod closure;
 mod contacts;
 mod force_closure;
+mod hull;
+mod linearised;
 mod socp;
+mod spanning;
+mod wrench_ball;
+mod wrenches;
 
 pub use force_closure::{ForceClosure, ForceClosureSettings};
+pub use linearised::{Linearised, LinearisedSettings};
 pub use socp::{Socp, SocpSettings};
+pub use wrench_ball::{Center, WrenchBall, WrenchBallSettings};

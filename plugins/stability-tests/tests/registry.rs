@@ -8,7 +8,13 @@ fn every_stability_test_is_registered_with_sources_and_a_schema() {
     let mut entries: Vec<_> = inventory::iter::<Entry>.into_iter().collect();
     entries.sort_by_key(|entry| entry.id);
     let ids: Vec<_> = entries.iter().map(|entry| entry.id).collect();
-    assert_eq!(ids, ["stability-test/force-closure", "stability-test/socp"]);
+    let known = [
+        "stability-test/force-closure",
+        "stability-test/linearised",
+        "stability-test/socp",
+        "stability-test/wrench-ball",
+    ];
+    assert_eq!(ids, known);
     for entry in entries {
         assert!(matches!(entry.build, Build::StabilityTest(_)));
         assert!(!entry.references.is_empty() && (entry.schema)().contains("default"));

@@ -14,6 +14,7 @@ const ASCENT_ROUNDS: usize = 20;
 /// The coordinates that margins are given in, as the map from a grasp's own scaled coordinates.
 pub(crate) struct Frame {
     map: Matrix6<f64>,
+    back: Matrix6<f64>,
 }
 
 impl Frame {
@@ -25,13 +26,37 @@ impl Frame {
         // v at the new centre: a' = a + b × shift; ω' = b times the ratio of lengths.
         map.fixed_view_mut::<3, 3>(0, 3).copy_from(&-cross_matrix(&shift));
         map.fixed_view_mut::<3, 3>(3, 3).copy_from(&(Matrix3::identity() * scale));
-        Self { map }
+        let back = map.try_inverse().expect("a triangular matrix whose diagonal is 1 and a ratio of lengths");
+        Self { map, back }
+    }
+
+    /// The grasp's own twist for a covector given in these coordinates.
+    pub fn twist(&self, w: &[f64; 6]) -> Twist {
+        Twist::from_array((self.back * Vector6::from(*w)).into())
+    }
+
+    /// The wrench in these coordinates: powers stay what they are.
+    pub fn wrench(&self, wrench: &Twist) -> [f64; 6] {
+        self.back.tr_mul(&Vector6::from(wrench.to_array())).into()
     }
 
     /// The twist's norm in these coordinates.
     pub fn norm(&self, w: &Twist) -> f64 {
         (self.map * Vector6::from(w.to_array())).norm()
     }
+}
+
+/// Quick bounds of Q1 in `frame` for a grasp that is force closure: the certified one from the centre, and the depth along the ellipsoid's axes.
+pub(crate) fn glance(search: &Search<'_>, frame: &Frame) -> (f64, f64) {
+    let Some(centre) = Centre::find(search) else { return (0.0, f64::INFINITY) };
+    let inverse = centre.H.full().cholesky().map(|factor| factor.inverse());
+    let Some(inverse) = inverse else { return (0.0, f64::INFINITY) };
+    let ellipsoid = SymmetricEigen::new(frame.map * inverse * frame.map.transpose());
+    let longest = ellipsoid.eigenvalues.max().max(0.0).sqrt();
+    let lower = 1.0 / (frame.norm(&centre.w) + centre.radius(search) * longest);
+    let along = |axis: Vector6<f64>| search.body.gauge(&frame.twist(&axis.into()));
+    let depths = ellipsoid.eigenvectors.column_iter().map(|axis| along(axis.into()).min(along(-axis)));
+    (lower, depths.fold(f64::INFINITY, f64::min))
 }
 
 /// Lower and upper bound of Q1 in `frame` for a grasp that is force closure.

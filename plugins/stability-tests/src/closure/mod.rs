@@ -6,6 +6,8 @@ mod polar;
 mod symmetric;
 mod triangle;
 
-pub(crate) use margin::{Frame, bracket};
+pub(crate) use margin::{Frame, bracket, glance};
 pub(crate) use newton::{Outcome, Search};
+pub(crate) use polar::PolarBody;
+pub(crate) use symmetric::{Factor, Symmetric6};
 pub(crate) use triangle::three_points;

@@ -2,10 +2,13 @@
 #![allow(dead_code)] // every test file takes what it needs
 
 use regrasp_api::{
-    Assessment, CallError, Certificate, Cone, Context, FingerIndex, Grasp, GraspContact, Hint, Random,
-    Rotation, Stability, StabilityTest, Uninterrupted, Vec3,
+    Assessment, CallError, Certificate, Cone, ConeEdge, Context, FingerIndex, Grasp, GraspContact, Hint,
+    Random, Rotation, Stability, StabilityTest, Uninterrupted, Vec3,
 };
-use regrasp_stability_tests::{ForceClosure, ForceClosureSettings, Socp, SocpSettings};
+use regrasp_stability_tests::{
+    ForceClosure, ForceClosureSettings, Linearised, LinearisedSettings, Socp, SocpSettings, WrenchBall,
+    WrenchBallSettings,
+};
 
 /// A contact as the tests build it: point, outward normal, friction, torsional radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +42,38 @@ pub fn force_closure() -> ForceClosure {
 
 pub fn socp() -> Socp {
     Socp::new(SocpSettings::default()).unwrap()
+}
+
+pub fn linearised(edges: usize) -> Linearised {
+    Linearised::new(LinearisedSettings { edges }).unwrap()
+}
+
+pub fn wrench_ball(settings: WrenchBallSettings) -> WrenchBall {
+    WrenchBall::new(settings, Vec3::zeros()).unwrap()
+}
+
+/// The verdict of any test, without a hint.
+pub fn verdict_of(test: &dyn StabilityTest, grasp: &Grasp<'_>) -> Stability {
+    with_context(|context| test.test(grasp, &mut Hint::default(), context))
+}
+
+/// The edges of each contact's cone replaced by `count` edges on it.
+pub fn pyramids(touches: &[Touch], count: usize) -> Vec<Vec<ConeEdge>> {
+    let edge = |touch: &Touch, j: usize| {
+        let (sin, cos) = (std::f64::consts::TAU * j as f64 / count as f64).sin_cos();
+        ConeEdge { tangential: [touch.mu * cos, touch.mu * sin], torsion: 0.0 }
+    };
+    touches.iter().map(|touch| (0..count).map(|j| edge(touch, j)).collect()).collect()
+}
+
+/// The grasp with those edges as cones.
+pub fn polyhedral<'a>(touches: &[Touch], edges: &'a [Vec<ConeEdge>]) -> Grasp<'a> {
+    let mut grasp = Grasp::new(Vec3::zeros());
+    for (i, (touch, edges)) in touches.iter().zip(edges).enumerate() {
+        let cone = Cone::Polyhedral(edges);
+        grasp.push(GraspContact { finger: FingerIndex(i as u8), p_OC: touch.p, n_O: touch.n, cone });
+    }
+    grasp
 }
 
 pub fn with_context<T>(call: impl FnOnce(&mut Context<'_>) -> Result<T, CallError>) -> T {
