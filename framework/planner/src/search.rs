@@ -7,8 +7,8 @@ use crate::query::{Step, shortest_path};
 use crate::session::{Call, Counted, Session};
 use crate::steps;
 use regrasp_api::{
-    Action, CallError, Configuration, EdgeId, EdgeKind, EdgeVerdict, FingerSet, Link, NodeId, PoseRequest,
-    Tally, Target, Task,
+    Action, CallError, Configuration, EdgeId, EdgeKind, EdgeVerdict, FingerSet, GraphView, GuardedService,
+    Link, NodeId, PoseRequest, Slot, Tally, Target, Task,
 };
 use regrasp_plan::Segment;
 use std::collections::VecDeque;
@@ -69,11 +69,27 @@ impl Search<'_> {
             goals: &self.goals,
             generated: (self.samples, self.max_nodes),
         };
+        let view = GuardedService(&view as &dyn GraphView);
         let decided = self.session.counted(Call::Strategy, self.leg, step, |context| {
             self.session.drivers.strategy.next(&view, context)
         });
         self.tally.add(&decided.tally);
-        decided.result
+        decided.result.and_then(|action| self.refuse_unknown_nodes(action))
+    }
+
+    /// An action on nodes that are in the graph.
+    fn refuse_unknown_nodes(&self, action: Action) -> Result<Action, CallError> {
+        let known = |node: NodeId| (node.0 as usize) < self.graph.node_count();
+        let sound = match action {
+            Action::Extend(node, _) => known(node),
+            Action::Connect(a, b, _) => known(a) && known(b) && a != b,
+            _ => true,
+        };
+        if sound {
+            return Ok(action);
+        }
+        let reason = format!("{action:?} with {} nodes in the graph", self.graph.node_count());
+        Err(CallError::Contract { plugin: Slot::GraphStrategy.name().into(), reason })
     }
 
     /// Algorithm 2: a new node of GS_n, joined to the components that a path in GS_n reaches.

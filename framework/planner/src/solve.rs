@@ -10,9 +10,9 @@ use crate::search::Search;
 use crate::session::{Call, Drivers, Session, leg_task};
 use crate::smooth::Smoother;
 use regrasp_api::{
-    CallError, Clearance, Configuration, ContactModel, FingerGrasp, FingerSet, Hand, Interrupt, NodeId,
-    ObjectModel, Pose, PoseDescription, Problem, StabilityTest, SurfaceParam, Tally, Task, Vec3,
-    unless_fault,
+    Admissible, CallError, Clearance, Configuration, ContactModel, FingerGrasp, FingerSet, GuardedService,
+    Hand, Interrupt, NodeId, ObjectModel, Pose, PoseDescription, Problem, StabilityTest, SurfaceParam, Tally,
+    Task, Vec3, unless_fault,
 };
 use regrasp_plan::{Motion, Segment, Statistics, TimingLimits, assign_times, plugin_statistics};
 
@@ -56,13 +56,15 @@ pub struct Request<'a> {
 pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
     let poses = poses(request.problem)?;
     let (lower, upper) = workspace(request.problem, &poses);
+    // A sampler from a library asks for admission in its own binary, which a panic could not leave.
+    let admissible = GuardedService(&Leavable as &dyn Admissible);
     let task = Task {
         hand: request.hand,
         clearance: request.clearance,
         contact_model: request.contact_model,
         stability: request.stability,
         surface: request.surface,
-        admissible: &Leavable,
+        admissible: &admissible,
         object: request.object,
         g_H: Vec3::from(request.problem.gravity),
         tolerances: &request.problem.limits.tolerances,

@@ -5,6 +5,7 @@ mod fault;
 mod fingerprint;
 mod guard;
 mod roles;
+mod services;
 #[cfg(test)]
 mod tests;
 
@@ -12,6 +13,7 @@ pub use entry::*;
 pub use fault::*;
 pub use fingerprint::*;
 pub use guard::{Guardable, guarded};
+pub use services::*;
 
 use crate::Entry;
 

@@ -3,8 +3,8 @@
 use super::guard::{Guard, Guardable};
 use crate::{
     Action, Assessment, CallError, ClosedChainSampler, Cone, Configuration, Contact, ContactModel, Context,
-    FingerIndex, FingerSet, GraphStrategy, GraphView, Grasp, Hint, LocalPlanner, MAX_FINGERS, Path,
-    PerFinger, Pose, PoseRequest, Projection, Random, Reached, Stability, StabilityTest, SurfaceParam,
+    Criterion, FingerIndex, FingerSet, GraphStrategy, GraphView, Grasp, Hint, LocalPlanner, MAX_FINGERS,
+    Path, PerFinger, Pose, PoseRequest, Projection, Random, Reached, Stability, StabilityTest, SurfaceParam,
     SurfacePath, Target, Task, Vec3,
 };
 
@@ -69,6 +69,10 @@ impl StabilityTest for Guard<dyn StabilityTest> {
         context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
         self.call(|test| test.stable_without(grasp, finger, context))
+    }
+
+    fn criterion(&self) -> Criterion {
+        self.value(|test| test.criterion(), Criterion::default)
     }
 }
 

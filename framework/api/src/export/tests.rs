@@ -138,6 +138,36 @@ fn every_function_of_an_entry_is_guarded() {
     take_fault();
 }
 
+/// A method that a trait provides and a guard does not pass on would run the provided code in place of the plugin's own, silently.
+#[test]
+fn guards_pass_on_every_method_of_every_trait() {
+    let methods = |text: &'static str, from: &str| -> Vec<&'static str> {
+        let body = text.split_once(from).unwrap_or_else(|| panic!("there is no `{from}`")).1;
+        let body = body.split_once("\n}").expect("a block ends").0;
+        body.split("    fn ").skip(1).map(|rest| rest.split(['(', '<']).next().unwrap_or_default()).collect()
+    };
+    let roles = include_str!("roles.rs");
+    let services = include_str!("services.rs");
+    let traits = [
+        ("ContactModel", include_str!("../roles/contact_model.rs"), roles),
+        ("StabilityTest", include_str!("../roles/stability_test.rs"), roles),
+        ("SurfaceParam", include_str!("../roles/surface_param.rs"), roles),
+        ("ClosedChainSampler", include_str!("../roles/closed_chain_sampler.rs"), roles),
+        ("LocalPlanner", include_str!("../roles/local_planner.rs"), roles),
+        ("GraphStrategy", include_str!("../roles/graph_strategy.rs"), roles),
+        ("GraphView", include_str!("../roles/graph_strategy.rs"), services),
+        ("Hand", include_str!("../services/hand.rs"), services),
+        ("Clearance", include_str!("../services/clearance.rs"), services),
+        ("Admissible", include_str!("../task.rs"), services),
+    ];
+    for (name, declared, guards) in traits {
+        let guard = if guards == roles { "Guard<dyn" } else { "GuardedService<'_, dyn" };
+        let wanted = methods(declared, &format!("pub trait {name}"));
+        let passed = methods(guards, &format!("impl {name} for {guard} {name}"));
+        assert_eq!(wanted, passed, "{name}");
+    }
+}
+
 struct NoHand;
 impl Hand for NoHand {
     fn finger_count(&self) -> usize {

@@ -1,6 +1,7 @@
 //! Role 2: whether a grasp is stable, by what margin, with which certificate.
 
 use crate::{CallError, Context, FingerIndex, FingerSet, Grasp, Hint, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// The verdict on one grasp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,11 +21,39 @@ impl Stability {
     }
 }
 
+/// What a test means by "stable". A plan records it, and the verifier holds the plan to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Criterion {
+    /// Force closure: the contacts resist every small wrench.
+    #[default]
+    Closure,
+    /// Bounded contact forces hold the object's weight and this load. The verdict depends on the object's orientation.
+    Equilibrium(Load),
+}
+
+/// The disturbances that a grasp must resist beside gravity, and the forces that it may use.
+///
+/// A force f at the object's centre of mass and a torque m with |f|/F + |m|/T ≤ 1. They count as resisted where the twelve vertices of the
+/// regular icosahedron around each of the two balls are: (0, ±1, ±φ) and its cyclic permutations, φ the golden ratio, along the object's
+/// axes, scaled so that the icosahedron's faces touch the ball.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    /// F: the largest disturbing force (N).
+    pub disturbance_force: f64,
+    /// T: the largest disturbing torque (N·m).
+    pub disturbance_torque: f64,
+    /// The largest normal force of one contact (N).
+    pub max_normal_force: f64,
+}
+
 /// Something that anybody can check by arithmetic and that proves a verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Certificate {
     /// Contact forces on the object in its frame (N per unit, one for each contact) with torques about the *inward* normal
-    /// (N·m): balanced, strictly inside every cone.
+    /// (N·m): balanced, strictly inside every cone. For [`Criterion::Equilibrium`] in N, balanced together with the object's weight.
     InternalForce {
         /// Force at each contact, in O.
         forces_O: Vec<Vec3>,
@@ -58,8 +87,8 @@ pub struct Assessment {
 
 /// Decides whether a grasp can hold the object.
 ///
-/// Laws: invariant under a rigid motion of the object's frame and under permutation of the contacts; verdicts are
-/// monotone in the friction and, for closure tests, in added contacts. Pure: equal arguments give the same verdict
+/// Laws: invariant under a rigid motion of the object's frame (with its centre of mass and load, where those count) and under
+/// permutation of the contacts; verdicts are monotone in the friction and in added contacts. Pure: equal arguments give the same verdict
 /// whatever the hint holds.
 pub trait StabilityTest: Send + Sync {
     /// Whether the grasp is stable. The planner's inner loop: no allocation.
@@ -105,6 +134,11 @@ pub trait StabilityTest: Send + Sync {
             }
         }
         Ok(liftable)
+    }
+
+    /// What "stable" means for this test; force closure, or more than that, unless it says otherwise.
+    fn criterion(&self) -> Criterion {
+        Criterion::Closure
     }
 
     /// Whether the grasp is stable without `finger`.

@@ -6,8 +6,8 @@ mod plan_file;
 pub use error::*;
 
 use crate::scenario::Scenario;
-use regrasp_api::{Hand, Interrupt, Parts};
-use regrasp_host::{Choices, PluginSet, Registry};
+use regrasp_api::{Clearance, GuardedService, Hand, Interrupt, Parts};
+use regrasp_host::{Choices, PluginSet, Registry, Source};
 use regrasp_plan::{Plan, StoppedBy};
 use regrasp_planner::{Clock, Drivers, Outcome, Progress, Request, Status, Stuck};
 use regrasp_verify::Verdict;
@@ -83,6 +83,8 @@ pub struct Setup<'a> {
     choices: Choices,
     clearance: SceneClearance,
     plugins: PluginSet,
+    /// Whether some plugin comes from a library: a panic of hand or clearance could not leave it.
+    has_loaded: bool,
 }
 
 impl<'a> Setup<'a> {
@@ -101,7 +103,10 @@ impl<'a> Setup<'a> {
         .map_err(|error| scenario.refuse(&error))?;
         let parts = Parts { object: &scenario.object, hand: scenario.hand.as_ref() };
         let plugins = PluginSet::build(registry, &choices, &parts)?;
-        Ok(Self { scenario, choices, clearance, plugins })
+        let loaded =
+            |id: &str| registry.find(id).is_some_and(|entry| registry.source(entry) != Source::BuiltIn);
+        let has_loaded = choices.iter().any(|(_, choice)| loaded(&choice.id));
+        Ok(Self { scenario, choices, clearance, plugins, has_loaded })
     }
 
     /// The plugins with full ids and complete settings.
@@ -144,10 +149,12 @@ impl<'a> Setup<'a> {
 
     fn solve(&self, options: &RunOptions<'_>) -> Result<Outcome, RunError> {
         let plugins = &self.plugins;
+        let (hand, clearance) = (self.hand(), &self.clearance as &dyn Clearance);
+        let guarded = (GuardedService(hand), GuardedService(clearance));
         let request = Request {
             problem: &self.scenario.problem,
-            hand: self.scenario.hand.as_ref(),
-            clearance: &self.clearance,
+            hand: if self.has_loaded { &guarded.0 } else { hand },
+            clearance: if self.has_loaded { &guarded.1 } else { clearance },
             object: &self.scenario.object,
             contact_model: plugins.contact_model.as_ref(),
             stability: plugins.stability.as_ref(),
