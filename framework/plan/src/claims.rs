@@ -1,6 +1,6 @@
 //! What a plan claims of its contacts and grasps: the verifier holds it to that.
 
-use regrasp_api::{Cone, ObjectModel};
+use regrasp_api::{Cone, Fingertip, ObjectModel};
 use serde::{Deserialize, Serialize};
 
 /// What the plan claims.
@@ -65,6 +65,19 @@ pub enum TransferLaw {
     /// The fingertips roll on the object, without slip and free to spin.
     #[default]
     Rolling,
+    /// The contacts stay where they are on the object, and the fingertips' centres with them: for hands that declare point fingertips, which
+    /// turn freely about their contacts.
+    FixedPoint,
+}
+
+impl TransferLaw {
+    /// The law of a hand's fingertips: balls roll, points stay.
+    pub fn of_fingertips(fingertip: Fingertip) -> Self {
+        match fingertip {
+            Fingertip::Ball => Self::Rolling,
+            Fingertip::Point => Self::FixedPoint,
+        }
+    }
 }
 
 /// Where torques are taken about and what they are divided by, so that margins of different grasps compare.

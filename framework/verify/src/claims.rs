@@ -29,8 +29,15 @@ pub(crate) fn claims(plan: &Plan, object: &ObjectModel) -> Check {
     if !frame_agrees(&plan.claims.margin, object) {
         fault("margins must be measured about the object's centre of mass, in its largest radius".into());
     }
-    if plan.claims.criterion != Criterion::Closure || plan.claims.transfer_law != TransferLaw::Rolling {
-        fault("only force closure and rolling transfers can be checked".into());
+    if plan.claims.criterion != Criterion::Closure {
+        fault("only force closure can be checked".into());
+    }
+    let fingertip = plan.scenario.problem.hand.fingertip;
+    if plan.claims.transfer_law != TransferLaw::of_fingertips(fingertip) {
+        let law = plan.claims.transfer_law;
+        fault(format!(
+            "the plan claims transfers by the law {law:?}, the hand declares fingertips of the kind {fingertip:?}"
+        ));
     }
     if !known && gauge.worst() == Some(0.0) {
         gauge.remark(&format!(

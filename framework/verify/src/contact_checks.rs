@@ -1,4 +1,4 @@
-//! What happens at the contacts: closure, normals, slip, and whether the contact point moves continuously.
+//! What happens at the contacts: closure, normals, slip by the claimed law, and whether the contact point moves continuously.
 
 use crate::hand::Chains;
 use crate::scene::Scene;
@@ -6,7 +6,7 @@ use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use nalgebra::Point3;
 use regrasp_api::{MAX_FINGERS, Pose, Tolerances, Vec3};
-use regrasp_plan::{ContactRecord, Extreme, Place};
+use regrasp_plan::{ContactRecord, Extreme, Place, TransferLaw};
 
 /// A fingertip against the object's surface.
 #[derive(Clone, Copy, Debug)]
@@ -41,13 +41,16 @@ pub(crate) struct ContactChecks<'s> {
     normals: Gauge,
     slip: Gauge,
     jumps: Gauge,
+    law: TransferLaw,
     rolling: [Option<Rolling>; MAX_FINGERS],
     facets: [u32; MAX_FINGERS],
 }
 
-/// How one contact has rolled since its transfer began.
+/// How one contact has moved since its transfer began.
 #[derive(Clone, Copy)]
 struct Rolling {
+    /// Where it touched first, and where its centre was then (m, in O).
+    first: (Touch, Vec3),
     touch: Touch,
     p_OTip: Vec3,
     X_OL: Pose,
@@ -55,8 +58,27 @@ struct Rolling {
     slip_O: Vec3,
 }
 
+impl Rolling {
+    /// Slip (m, in O) from here to the next sample, by a ball of `radius` (m).
+    ///
+    /// The displacement of the fingertip's material point at the contact, relative to the object, from the motion of the fingertip's centre
+    /// and its rotation in O, with the normal half-way: second order in the step. Rolling makes its tangential part zero.
+    fn slip_until(&self, next: &Self, radius: f64) -> Vec3 {
+        let n_O = (self.touch.n_O + next.touch.n_O).try_normalize(1e-9).unwrap_or(next.touch.n_O);
+        let turn = (next.X_OL.rotation * self.X_OL.rotation.inverse()).scaled_axis();
+        let displacement = next.p_OTip - self.p_OTip - turn.cross(&n_O) * radius;
+        displacement - n_O * n_O.dot(&displacement)
+    }
+
+    /// How far (m) contact point or fingertip's centre are from where they began on the object, whichever is more.
+    fn strayed(&self) -> f64 {
+        let (touch, p_OTip) = &self.first;
+        (self.touch.p_OC - touch.p_OC).norm().max((self.p_OTip - p_OTip).norm())
+    }
+}
+
 impl<'s> ContactChecks<'s> {
-    pub(crate) fn new(hand: &'s Chains, scene: &'s Scene, tolerances: &Tolerances) -> Self {
+    pub(crate) fn new(hand: &'s Chains, scene: &'s Scene, tolerances: &Tolerances, law: TransferLaw) -> Self {
         Self {
             hand,
             scene,
@@ -64,6 +86,7 @@ impl<'s> ContactChecks<'s> {
             normals: Gauge::new("normals", "rad", Side::AtMost, tolerances.normal),
             slip: Gauge::new("slip", "m", Side::AtMost, tolerances.slip),
             jumps: Gauge::new("contact-jumps", "m", Side::AtMost, tolerances.closure),
+            law,
             rolling: [None; MAX_FINGERS],
             facets: [0; MAX_FINGERS],
         }
@@ -102,7 +125,7 @@ impl<'s> ContactChecks<'s> {
                 );
             }
             if leg.moving.is_none() {
-                self.roll(finger, touch, p_OTip, frames, place);
+                self.follow(finger, touch, p_OTip, frames, place);
             }
             *found = Some(touch);
         }
@@ -127,11 +150,8 @@ impl<'s> ContactChecks<'s> {
         self.normals.note(angle.max((n_O.norm() - 1.0).abs()), place);
     }
 
-    /// Adds up the slip since the last sample.
-    ///
-    /// The displacement of the fingertip's material point at the contact, relative to the object, from the motion of the fingertip's centre
-    /// and its rotation in O, with the normal half-way: second order in the step. Rolling makes its tangential part zero.
-    fn roll(
+    /// Measures the slip: what rolling adds up since the transfer began, or how far a fixed point has strayed from where it was then.
+    fn follow(
         &mut self,
         finger: usize,
         touch: Touch,
@@ -140,19 +160,22 @@ impl<'s> ContactChecks<'s> {
         place: impl Fn() -> Place,
     ) {
         let X_OL = frames.X_HO.inv_mul(frames.last_link(&self.hand.fingers[finger]));
-        let mut slip_O = Vec3::zeros();
+        let mut now = Rolling { first: (touch, p_OTip), touch, p_OTip, X_OL, slip_O: Vec3::zeros() };
         if let Some(last) = &self.rolling[finger] {
-            let n_O = (last.touch.n_O + touch.n_O).try_normalize(1e-9).unwrap_or(touch.n_O);
-            let step = p_OTip - last.p_OTip;
-            let turn = (X_OL.rotation * last.X_OL.rotation.inverse()).scaled_axis();
-            let displacement = step - turn.cross(&n_O) * self.hand.tip_radius;
-            slip_O = last.slip_O + displacement - n_O * n_O.dot(&displacement);
+            now.first = last.first;
             // Closest points of a convex surface move no farther than the centre does: more is a jump over a concave edge.
-            let jump = (touch.p_OC - last.touch.p_OC).norm() - step.norm();
-            self.jumps.note(jump.max(0.0), &place);
+            let step = (p_OTip - last.p_OTip).norm();
+            self.jumps.note(((touch.p_OC - last.touch.p_OC).norm() - step).max(0.0), &place);
+            if self.law == TransferLaw::Rolling {
+                now.slip_O = last.slip_O + last.slip_until(&now, self.hand.tip_radius);
+            }
         }
-        self.slip.note(slip_O.norm(), place);
-        self.rolling[finger] = Some(Rolling { touch, p_OTip, X_OL, slip_O });
+        let slip = match self.law {
+            TransferLaw::FixedPoint => now.strayed(),
+            _ => now.slip_O.norm(),
+        };
+        self.slip.note(slip, place);
+        self.rolling[finger] = Some(now);
     }
 
     /// Largest closure residual and slip, for the certificate.

@@ -28,7 +28,7 @@ use std::path::Path;
 /// | `contacts` | no finger starts or stops holding within a segment, but the one that a regrasp moves; resting contacts do not change |
 /// | `closure` | holding fingertips touch the surface, where the plan says and on the fingertip where it says |
 /// | `normals` | the plan's normals are those of the surface |
-/// | `slip` | no contact slips in sum over one transfer |
+/// | `slip` | no contact slips in sum over one transfer; by the law of fixed points, none leaves its place on the object |
 /// | `contact-jumps` | no contact point jumps in a transfer |
 /// | `lift`, `touch-travel` | a moving fingertip rises until it is lifted, and does not slide while it touches |
 /// | `clearance` | every pair that may not touch keeps its distance, also between the samples |
@@ -109,7 +109,7 @@ impl Walk<'_> {
         // The lowest height that the scenario lets a finger lift to.
         let lift = resolution.retreat.into_iter().fold(resolution.lift, f64::min);
         let mut sampled = Sampled {
-            contacts: ContactChecks::new(self.hand, self.scene, tolerances),
+            contacts: ContactChecks::new(self.hand, self.scene, tolerances, self.plan.claims.transfer_law),
             clearance: ClearanceCheck::new(self.hand, self.scene, tolerances.clearance),
             lift: LiftCheck::new(self.hand, self.scene, tolerances, lift),
             stability: StabilityCheck::new(&self.plan.claims),

@@ -61,7 +61,7 @@ impl Setup<'_> {
         Claims {
             contact: ContactClaim { model, cone },
             criterion: Criterion::Closure,
-            transfer_law: TransferLaw::Rolling,
+            transfer_law: TransferLaw::of_fingertips(self.hand().fingertip()),
             margin: MarginFrame::of_object(object),
         }
     }

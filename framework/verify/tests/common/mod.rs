@@ -30,8 +30,22 @@ pub fn problem() -> Problem {
     problem
 }
 
+/// Moves the object from `q` to `X_HO` in `steps` steps, every holding fingertip staying where it is on the object.
+pub fn pinned(hand: &ChainHand, q: &Configuration, X_HO: &Pose, steps: usize) -> Segment {
+    let mut states = vec![q.clone()];
+    for step in 1..=steps {
+        let mut next = states[step - 1].clone();
+        next.X_HO = interpolate(&q.X_HO, X_HO, step as f64 / steps as f64);
+        for finger in q.holding().iter() {
+            next.joints[finger] = reach(hand, &next, finger, &q.contacts[finger].unwrap(), 0.0);
+        }
+        states.push(next);
+    }
+    Segment { kind: SegmentKind::Transfer, states, times: vec![] }
+}
+
 /// Fingers on the faces +x, +y, -x, -y, a little off the middle.
-fn start(hand: &ChainHand) -> Configuration {
+pub fn start(hand: &ChainHand) -> Configuration {
     let X_HO = Pose::translation(0.0, 0.0, 0.085);
     let normals = [Vec3::x(), Vec3::y(), -Vec3::x(), -Vec3::y()];
     let contact = |finger: FingerIndex| {
@@ -132,14 +146,20 @@ pub fn by_hand(hand: &ChainHand, steps: usize) -> Motion {
 
 /// A plan that holds everything it must.
 pub fn plan(steps: usize) -> Plan {
-    let mut problem = problem();
+    let problem = problem();
     let hand = ChainHand::new(problem.hand.clone()).unwrap();
     let motion = by_hand(&hand, steps);
+    plan_of(problem, &hand, &motion)
+}
+
+/// The plan of a motion of three segments, the first and the last of which reach a goal.
+pub fn plan_of(mut problem: Problem, hand: &ChainHand, motion: &Motion) -> Plan {
     let goal = |segment: usize| motion.segments[segment].states.last().unwrap().X_HO;
     problem.goal = [0, 2]
         .map(|segment| GoalDescription { pose: PoseDescription::from(&goal(segment)), grasp: None })
         .to_vec();
     let object = regrasp_world::load_object(&problem.object, std::path::Path::new("")).unwrap();
+    let transfer_law = TransferLaw::of_fingertips(problem.hand.fingertip);
     let choice = PluginChoice { id: "contact-model/pcwf".into(), settings: serde_json::json!({}) };
     Plan {
         format: Format::RegraspPlan,
@@ -157,13 +177,13 @@ pub fn plan(steps: usize) -> Plan {
                 cone: Some(ConeClaim { mu: 0.8, gamma: 0.0 }),
             },
             criterion: Criterion::Closure,
-            transfer_law: TransferLaw::Rolling,
+            transfer_law,
             margin: MarginFrame::of_object(&object),
         },
         goals_reached: vec![1, 3],
         stopped_by: None,
         statistics: Statistics::default(),
         certificate: None,
-        segments: records(&motion, &hand).unwrap(),
+        segments: records(motion, hand).unwrap(),
     }
 }
