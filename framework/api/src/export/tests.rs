@@ -144,7 +144,11 @@ fn guards_pass_on_every_method_of_every_trait() {
     let methods = |text: &'static str, from: &str| -> Vec<&'static str> {
         let body = text.split_once(from).unwrap_or_else(|| panic!("there is no `{from}`")).1;
         let body = body.split_once("\n}").expect("a block ends").0;
-        body.split("    fn ").skip(1).map(|rest| rest.split(['(', '<']).next().unwrap_or_default()).collect()
+        let names =
+            body.split("    fn ").skip(1).map(|rest| rest.split(['(', '<']).next().unwrap_or_default());
+        let mut names: Vec<_> = names.collect();
+        names.sort_unstable();
+        names
     };
     let roles = include_str!("roles.rs");
     let services = include_str!("services.rs");
