@@ -8,8 +8,8 @@
 //! Contacts are drawn by rejection, the cheapest test first: a fingertip outside the ball that the finger can reach costs
 //! a few nanoseconds, so that about thirty tries a finger are cheaper than listing the facets within reach.
 
-mod pose;
-
+use crate::chains;
+use crate::pose::{self, PoseLaw};
 use regrasp_api::{
     Build, CallError, ClosedChainSampler, Configuration, Contact, Context, Entry, FingerIndex, FingerSet,
     PerFinger, Pose, PoseRequest, Reason, Settings, SettingsError, Slot, Task, check_count, check_range,
@@ -71,12 +71,7 @@ impl Rlg {
         if task.clearance.object_free(&X_HO).is_err() {
             return Ok(Err(Reason::Collision));
         }
-        let count = task.hand.finger_count();
-        let mut q = Configuration {
-            X_HO,
-            joints: PerFinger::from_fn(count, |finger| task.hand.finger(finger).rest),
-            contacts: PerFinger::filled(count, None),
-        };
+        let mut q = chains::at_rest(task, X_HO);
         let mut placed = FingerSet::EMPTY;
         for finger in q.joints.fingers() {
             let reason = if holding.contains(finger) {
@@ -137,9 +132,11 @@ impl ClosedChainSampler for Rlg {
         context: &mut Context<'_>,
     ) -> Result<Option<Configuration>, CallError> {
         context.count_call(Slot::Sampler);
+        let RlgSettings { anywhere, spread_deg, .. } = self.settings;
+        let law = PoseLaw { anywhere, spread: spread_deg.to_radians() };
         for _ in 0..self.settings.poses {
             context.proceed()?;
-            let X_HO = pose::draw(task, pose, &self.settings, &mut context.random);
+            let X_HO = pose::draw(task, pose, &law, &mut context.random);
             match self.try_pose(task, X_HO, holding, context)? {
                 Ok(q) => return Ok(Some(q)),
                 Err(reason) => context.reject(Slot::Sampler, reason),
@@ -156,18 +153,7 @@ impl ClosedChainSampler for Rlg {
         near: &Configuration,
         context: &mut Context<'_>,
     ) -> Result<Option<Configuration>, CallError> {
-        let mut q = Configuration { X_HO: *X_HO, joints: near.joints, contacts: *contacts };
-        for finger in q.joints.fingers() {
-            let Some(p_HF) = q.contact_tip_center(finger, task.hand.fingertip_radius()) else { continue };
-            match task.hand.inverse(finger, &p_HF, &near.joints[finger]) {
-                Some(joints) => q.joints[finger] = joints,
-                None => {
-                    context.reject(Slot::Sampler, Reason::Reach);
-                    return Ok(None);
-                }
-            }
-        }
-        Ok(Some(q))
+        Ok(chains::close(task, X_HO, contacts, near, context))
     }
 }
 
