@@ -34,6 +34,8 @@ pub(crate) struct Search<'a> {
     /// Samples drawn ahead of their turn.
     pub drawn: VecDeque<Sample>,
     pub generated: usize,
+    /// Samples anywhere, counted apart: those drawn ahead must not change their numbers when nodes are extended in between.
+    pub explored: usize,
     pub samples: usize,
 }
 
@@ -95,10 +97,11 @@ impl Search<'_> {
     /// Algorithm 2: a new node of GS_n, joined to the components that a path in GS_n reaches.
     fn explore(&mut self, link: Link) -> Result<(), CallError> {
         if self.drawn.is_empty() {
-            let first = self.samples;
+            let first = self.explored;
             self.drawn = self.session.draw(self.session.threads(), |i| self.sample(first + i)).into();
         }
         let sample = self.drawn.pop_front().expect("at least one sample was drawn");
+        self.explored += 1;
         self.samples += 1;
         self.tally.add(&sample.tally);
         if let Some(q) = sample.result? {
