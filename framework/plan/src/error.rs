@@ -90,9 +90,15 @@ pub enum WriteError {
         path: PathBuf,
     },
     /// The folder does not exist.
-    #[error("`{}` is not written: the folder does not exist; create it first", path.display())]
+    #[error("`{}` is not written: its folder does not exist; create it first", path.display())]
     NoFolder {
         /// The file.
+        path: PathBuf,
+    },
+    /// The path is a folder.
+    #[error("`{}` is not written: it is a folder; give a file name", path.display())]
+    IsFolder {
+        /// The folder.
         path: PathBuf,
     },
     /// Anything else.

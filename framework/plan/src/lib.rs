@@ -13,6 +13,7 @@ mod json;
 mod motion;
 mod statistics;
 mod timing;
+mod write;
 
 pub use certificate::*;
 pub use claims::*;
@@ -24,3 +25,4 @@ pub use json::*;
 pub use motion::*;
 pub use statistics::*;
 pub use timing::*;
+pub use write::*;

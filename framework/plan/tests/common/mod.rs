@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use regrasp_api::*;
+use regrasp_plan::Criterion;
 use regrasp_plan::*;
 use std::collections::BTreeMap;
 
