@@ -101,8 +101,9 @@ impl StabilityTest for ForceClosure {
         &self,
         grasp: &Grasp<'_>,
         hint: &mut Hint,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<Stability, CallError> {
+        context.count_call(Slot::StabilityTest);
         Ok(self.decide(&ScaledGrasp::gather(grasp, None, ID)?, hint))
     }
 
@@ -124,8 +125,9 @@ impl StabilityTest for ForceClosure {
         &self,
         grasp: &Grasp<'_>,
         finger: FingerIndex,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
+        context.count_call(Slot::StabilityTest);
         let rest = ScaledGrasp::gather(grasp, Some(finger), ID)?;
         Ok(self.decide(&rest, &mut Hint::default()).is_stable())
     }

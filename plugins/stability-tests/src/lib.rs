@@ -1,7 +1,9 @@
 //! Built-in stability tests: exact force closure, the conic program that it is checked against, cones of edges, the wrench ball, equilibrium.
 
+mod balance;
 mod closure;
 mod contacts;
+mod equilibrium;
 mod force_closure;
 mod hull;
 mod linearised;
@@ -10,6 +12,7 @@ mod spanning;
 mod wrench_ball;
 mod wrenches;
 
+pub use equilibrium::{Equilibrium, EquilibriumSettings};
 pub use force_closure::{ForceClosure, ForceClosureSettings};
 pub use linearised::{Linearised, LinearisedSettings};
 pub use socp::{Socp, SocpSettings};

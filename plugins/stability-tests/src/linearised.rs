@@ -90,8 +90,9 @@ impl StabilityTest for Linearised {
         &self,
         grasp: &Grasp<'_>,
         _hint: &mut Hint,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<Stability, CallError> {
+        context.count_call(Slot::StabilityTest);
         Ok(verdict(&span(&WrenchSet::gather(grasp, None, Some(&self.ring)))))
     }
 
@@ -121,8 +122,9 @@ impl StabilityTest for Linearised {
         &self,
         grasp: &Grasp<'_>,
         finger: FingerIndex,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
+        context.count_call(Slot::StabilityTest);
         let rest = WrenchSet::gather(grasp, Some(finger), Some(&self.ring));
         Ok(verdict(&span(&rest)).is_stable())
     }

@@ -96,8 +96,9 @@ impl StabilityTest for Socp {
         &self,
         grasp: &Grasp<'_>,
         _hint: &mut Hint,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<Stability, CallError> {
+        context.count_call(Slot::StabilityTest);
         let scaled = ScaledGrasp::gather(grasp, None, ID)?;
         let grasp_map = scaled_grasp_map(&scaled);
         Ok(self.decide(&solve(&scaled, &grasp_map)?, &grasp_map))

@@ -159,8 +159,9 @@ impl StabilityTest for WrenchBall {
         &self,
         grasp: &Grasp<'_>,
         hint: &mut Hint,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<Stability, CallError> {
+        context.count_call(Slot::StabilityTest);
         Ok(self.decide(&self.gather(grasp, None), hint))
     }
 
@@ -191,8 +192,9 @@ impl StabilityTest for WrenchBall {
         &self,
         grasp: &Grasp<'_>,
         finger: FingerIndex,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
+        context.count_call(Slot::StabilityTest);
         Ok(self.decide(&self.gather(grasp, Some(finger)), &mut Hint::default()).is_stable())
     }
 }

@@ -49,7 +49,7 @@ fn no_yes_is_false_and_every_answer_proves_itself() {
 /// The verdict, and for some grasps the whole assessment.
 fn assess_quickly(test: &Linearised, touches: &[Touch]) -> (Stability, Option<regrasp_api::Assessment>) {
     let stability = verdict_of(test, &grasp_of(touches));
-    let whole = (touches[0].p.x.to_bits() % 8 == 0).then(|| assess(test, touches));
+    let whole = touches[0].p.x.to_bits().is_multiple_of(8).then(|| assess(test, touches));
     assert!(whole.as_ref().is_none_or(|found| found.stability == stability));
     (stability, whole)
 }

@@ -9,6 +9,7 @@ fn every_stability_test_is_registered_with_sources_and_a_schema() {
     entries.sort_by_key(|entry| entry.id);
     let ids: Vec<_> = entries.iter().map(|entry| entry.id).collect();
     let known = [
+        "stability-test/equilibrium",
         "stability-test/force-closure",
         "stability-test/linearised",
         "stability-test/socp",

@@ -1,10 +1,11 @@
 //! Laws that relate the verdicts of two grasps.
 
 use super::call::{build, stable};
+use crate::fixtures::Bench;
 use crate::fixtures::grasps::{self, Touch};
 use crate::law::{Subject, random};
-use crate::report::{Finding, ensure};
-use regrasp_api::{Rotation, StabilityTest, Vec3};
+use crate::report::{Fault, Finding, broken, ensure};
+use regrasp_api::{Build, Criterion, ObjectModel, Parts, Rotation, StabilityTest, Vec3};
 
 /// Breaks the law where `change` turns a verdict that is far from the boundary.
 fn invariant(
@@ -32,11 +33,25 @@ pub(super) fn rigid_motion(subject: &Subject<'_>) -> Finding {
     let test = build(subject)?;
     let mut random = random(21);
     for distance in [0.05, 5.0] {
-        invariant(&*test, &cases(21), |touches| {
-            grasps::moved(touches, &random.rotation(), &(random.direction() * distance))
-        })?;
+        for touches in cases(21) {
+            let (R, t) = (random.rotation(), random.direction() * distance);
+            let elsewhere = build_moved(subject, &R, &t)?;
+            let changed = grasps::moved(&touches, &R, &t);
+            let verdicts = (stable(&*test, &touches)?, stable(&*elsewhere, &changed)?);
+            ensure(verdicts.0 == verdicts.1, || {
+                format!("stable: {} for {touches:?}, {} for {changed:?}", verdicts.0, verdicts.1)
+            })?;
+        }
     }
     Ok(())
+}
+
+/// The test for the same object in another frame: a test that knows the centre of mass finds it where the contacts went.
+fn build_moved(subject: &Subject<'_>, R: &Rotation, t: &Vec3) -> Finding<Box<dyn StabilityTest>> {
+    let Build::StabilityTest(build) = subject.entry.build else { return broken("it builds another role") };
+    let parts = Bench::free_sphere().parts();
+    let object = ObjectModel { p_OCm: R * parts.object.p_OCm + t, ..parts.object.clone() };
+    Ok(build(&subject.demands.settings, &Parts { object: &object, ..parts })?)
 }
 
 pub(super) fn permutation(subject: &Subject<'_>) -> Finding {
@@ -60,6 +75,9 @@ pub(super) fn permutation(subject: &Subject<'_>) -> Finding {
 
 pub(super) fn scale(subject: &Subject<'_>) -> Finding {
     let test = build(subject)?;
+    if test.criterion() != Criterion::Closure {
+        return Err(Fault::Skip("a load in newtons and newton metres gives a grasp a size".into()));
+    }
     for factor in [0.02, 50.0] {
         let scaled = |touch: &Touch| Touch { p: touch.p * factor, gamma: touch.gamma * factor, ..*touch };
         invariant(&*test, &cases(23), |touches| touches.iter().map(scaled).collect())?;
