@@ -102,6 +102,31 @@ impl Hierarchy {
         self.split(things, second, start + half);
     }
 
+    /// Whether `is_closer` holds for a thing whose box comes closer to `p` than a squared distance (m²).
+    pub fn any_closer(&self, p: &Vec3, squared: f64, mut is_closer: impl FnMut(u32) -> bool) -> bool {
+        let mut stack = [0_u32; DEPTH];
+        let mut height = usize::from(!self.nodes.is_empty());
+        while height > 0 {
+            height -= 1;
+            let index = stack[height];
+            let node = &self.nodes[index as usize];
+            if node.squared_distance(p) >= squared {
+                continue;
+            }
+            if node.count > 0 {
+                let members = &self.order[node.start as usize..(node.start + node.count) as usize];
+                if members.iter().any(|&thing| is_closer(thing)) {
+                    return true;
+                }
+                continue;
+            }
+            stack[height] = index + 1;
+            stack[height + 1] = node.start;
+            height += 2;
+        }
+        false
+    }
+
     /// Visits every thing whose box may come as close to `p` as the bound, near ones first.
     ///
     /// `visit` is handed a thing and the bound on the squared distance (m²), and lowers the bound where the thing is closer.

@@ -68,6 +68,12 @@ impl ClosestPoints {
         self.signed(polyhedron, p_OF, &nearest)
     }
 
+    /// Whether every facet is at least `distance` (m) away.
+    pub fn is_clear(&self, polyhedron: &Polyhedron, p_OF: &Vec3, distance: f64) -> bool {
+        let squared = distance.max(0.0).powi(2);
+        !self.facets.any_closer(p_OF, squared, |facet| on_facet(polyhedron, p_OF, facet).squared < squared)
+    }
+
     /// Searches all facets; what is known already only gives the first bound.
     fn search(&self, polyhedron: &Polyhedron, p_OF: &Vec3, known: Option<Nearest>) -> Nearest {
         let mut best = known.unwrap_or_else(|| on_facet(polyhedron, p_OF, 0));

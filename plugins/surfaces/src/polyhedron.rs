@@ -71,6 +71,8 @@ pub(crate) struct Polyhedron {
     pub total_angle: Vec<f64>,
     /// Whether the solid is convex.
     pub convex: bool,
+    /// Largest distance of a vertex from the origin (m).
+    pub radius: f64,
     /// Distance below which points coincide (m).
     pub snap: f64,
 }
@@ -96,6 +98,7 @@ impl Polyhedron {
             outgoing: vec![u32::MAX; mesh.vertices().len()],
             total_angle: vec![0.0; mesh.vertices().len()],
             convex: false,
+            radius: mesh.radius(),
             snap: SNAP * mesh.radius(),
             half_edges,
         };

@@ -18,6 +18,8 @@ const STRAY: f64 = 5e-7;
 const SAME: f64 = 2e-10;
 /// Corrections before a place counts as unreachable.
 const SETTLE_STEPS: usize = 60;
+/// Corrections before the contact's jump is looked for by bisection.
+const CORNER_STEPS: usize = 6;
 /// Places looked at in one hollow before the fingertip counts as stuck.
 const MOST_PLACES: usize = 2000;
 
@@ -40,7 +42,7 @@ pub(super) struct Follower<'a> {
 impl Follower<'_> {
     /// Whether the ball at a contact touches nothing but the contact point.
     pub fn is_free(&self, contact: &Contact, sink: f64) -> bool {
-        self.tip(&contact.tip_center(self.radius), contact.facet).distance >= self.radius - sink
+        self.closest.is_clear(self.polyhedron, &contact.tip_center(self.radius), self.radius - sink)
     }
 
     /// Rewrites `path`, whose waypoints roll over the facets, so that the ball penetrates nothing; `false` where it cannot go.
@@ -162,9 +164,36 @@ impl Follower<'_> {
             return None;
         }
         *budget -= 1;
+        if let Some((left, taken)) = self.corner(from, to, gap) {
+            self.join(path, from, &left, depth + 1, budget)?;
+            self.advance(path, taken.contact);
+            return self.join(path, &taken, to, depth + 1, budget);
+        }
         let via = self.settle(&from.p_OF.lerp(&to.p_OF, 0.5))?;
         let via = self.join(path, from, &via, depth + 1, budget)?;
         self.join(path, &via, to, depth + 1, budget)
+    }
+
+    /// The place between two where the ball touches the facets of both at once: there the contact jumps.
+    fn corner(&self, from: &Touch, to: &Touch, gap: f64) -> Option<(Touch, Touch)> {
+        let mut p_OF = from.p_OF.lerp(&to.p_OF, 0.5);
+        if from.contact.facet == to.contact.facet {
+            return None;
+        }
+        for _ in 0..CORNER_STEPS {
+            let a = closest_of_facet(self.polyhedron, &p_OF, from.contact.facet);
+            let b = closest_of_facet(self.polyhedron, &p_OF, to.contact.facet);
+            let off = (a.distance - self.radius).abs().max((b.distance - self.radius).abs());
+            if off < SINK {
+                let near = (p_OF - from.p_OF).norm().max((p_OF - to.p_OF).norm()) < 1.5 * gap;
+                let clear = near && self.closest.is_clear(self.polyhedron, &p_OF, self.radius - SINK);
+                let touch = |contact| Touch { p_OF, contact };
+                return clear.then(|| (touch(a.contact), touch(b.contact)));
+            }
+            let [along_a, along_b] = self.moves(&p_OF, &a.contact, &b.contact)?;
+            p_OF += a.contact.n_O * along_a + b.contact.n_O * along_b;
+        }
+        None
     }
 
     /// The same place with the contact on the facet that was touched before, if the ball touches it still.
@@ -178,9 +207,10 @@ impl Follower<'_> {
 
     /// Whether the contact may go straight from one place to the next.
     fn is_direct(&self, from: &Touch, to: &Touch, gap: f64) -> bool {
+        let places: &[f64] = if gap > self.step / 2.0 { &[0.5, 0.25, 0.75] } else { &[0.5] };
         let same_facet = from.contact.facet == to.contact.facet;
         gap <= 1.5 * self.step
-            && [0.5, 0.25, 0.75].iter().all(|&t| {
+            && places.iter().all(|&t| {
                 let contact = between(&from.contact, &to.contact, t);
                 let off = |p: &Vec3| self.tip(p, contact.facet).distance;
                 // A straight line between two points of a facet stays in it.
@@ -204,9 +234,12 @@ impl Follower<'_> {
             }
             facet = Some(tip.contact.facet);
             let pushed = center + tip.contact.n_O * (self.radius - tip.distance);
-            center = match before {
-                Some(other) if tip.distance < self.radius => {
-                    self.on_both(&center, &tip.contact, &other).unwrap_or(pushed)
+            let other = before.filter(|_| tip.distance < self.radius);
+            let both = other.and_then(|other| Some((other, self.moves(&center, &tip.contact, &other)?)));
+            center = match both {
+                // A plane that would have to pull is not touched.
+                Some((other, [along_a, along_b])) if along_a >= 0.0 && along_b >= 0.0 => {
+                    center + tip.contact.n_O * along_a + other.n_O * along_b
                 }
                 _ => pushed,
             };
@@ -215,18 +248,13 @@ impl Follower<'_> {
         None
     }
 
-    /// The point closest to `center` on the offset planes of two contacts, if they are not parallel.
-    fn on_both(&self, center: &Vec3, a: &Contact, b: &Contact) -> Option<Vec3> {
+    /// How far (m) to move along the normals of two contacts to the offset planes of both, if they are not parallel.
+    fn moves(&self, p_OF: &Vec3, a: &Contact, b: &Contact) -> Option<[f64; 2]> {
         let cos = a.n_O.dot(&b.n_O);
         let determinant = 1.0 - cos * cos;
-        if determinant < 1e-8 {
-            return None;
-        }
-        let need = |contact: &Contact| self.radius - contact.n_O.dot(&(center - contact.p_OC));
+        let need = |contact: &Contact| self.radius - contact.n_O.dot(&(p_OF - contact.p_OC));
         let (to_a, to_b) = (need(a), need(b));
-        let (along_a, along_b) = ((to_a - cos * to_b) / determinant, (to_b - cos * to_a) / determinant);
-        // A plane that would have to pull is not touched.
-        (along_a >= 0.0 && along_b >= 0.0).then(|| center + a.n_O * along_a + b.n_O * along_b)
+        (determinant > 1e-8).then(|| [(to_a - cos * to_b) / determinant, (to_b - cos * to_a) / determinant])
     }
 
     /// The contact of a ball pushed out of (or back to) the surface from a contact where it sinks in.

@@ -58,7 +58,7 @@ impl<'a> Search<'a> {
 
     /// The shortest path from `start` if it is shorter than the known one by more than the tolerance.
     pub fn run(mut self, start: &Site, context: &Context<'_>) -> Result<Option<Found>, CallError> {
-        let least = self.bound.of_point(&start.p_OP).max(FINEST * self.polyhedron.mesh.radius());
+        let least = self.bound.of_point(&start.p_OP).max(FINEST * self.polyhedron.radius);
         self.scratch.queue.restart(least);
         self.spread_start(start);
         let mut count = 0;
