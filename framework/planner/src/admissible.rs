@@ -1,8 +1,8 @@
 //! Which configurations may become nodes.
 
 use regrasp_api::{
-    Admissible, CallError, Configuration, Context, FingerIndex, FingerSet, Grasp, LoneFinger, Reason, Slot,
-    Task, TipRule,
+    Admissible, CallError, Configuration, Context, FingerIndex, FingerSet, Grasp, LoneFinger, Reason, Task,
+    TipRule,
 };
 
 /// Admits configurations that can be left by transfers and regrasps.
@@ -44,7 +44,6 @@ impl Admissible for Leavable {
     ) -> Result<Option<Reason>, CallError> {
         let grasp = task.grasp(q, FingerSet::first(q.contacts.len()));
         let enough = grasp.contacts().len().saturating_sub(1);
-        context.count_call(Slot::StabilityTest);
         // More contacts never make a grasp unstable: where n - 1 subsets are stable the whole is.
         if task.stability.liftable(&grasp, enough, context)?.len() >= enough.max(1) {
             // At rest; while the object moves, contacts may spin and their torsion is gone.
