@@ -177,6 +177,7 @@ impl LocalPlanner for UpOverDown {
         mut path: Option<&mut Path>,
         context: &mut Context<'_>,
     ) -> Result<Reached, CallError> {
+        context.count_call(Slot::RegraspPlanner);
         let &Target::Regrasp { finger, contact, joints } = to else {
             let reason = "it moves one finger; use it in the slot `local-planner.regrasp`".into();
             return Err(CallError::Unsupported { plugin: ENTRY.id.into(), reason });

@@ -122,8 +122,9 @@ impl StabilityTest for PressedPair {
         &self,
         grasp: &Grasp<'_>,
         _hint: &mut Hint,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<Stability, CallError> {
+        context.count_call(Slot::StabilityTest);
         Ok(self.verdict(self.margin(grasp)?))
     }
 

@@ -20,7 +20,7 @@ const STEP: f64 = 2e-4;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FacetsSettings {
-    /// Points that a path may cross an edge at, 1..=100; more make paths shorter and slower.
+    /// Points that a path may cross an edge at, 1..=100; more make paths shorter and slower. Edges that are long for the object get more.
     #[schemars(range(min = 1, max = 100))]
     pub points: usize,
 }
@@ -85,6 +85,7 @@ impl Facets {
 
     fn put_points_on_edges(&mut self, count: usize) {
         let mut on_edge: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
+        let size = self.areas[self.areas.len() - 1].sqrt();
         for facet in facets(&self.mesh) {
             let corners = self.mesh.facets()[facet as usize];
             let mut here: Vec<usize> = corners.iter().map(|&corner| corner as usize).collect();
@@ -93,6 +94,7 @@ impl Facets {
                 let points = &mut self.points;
                 let between = on_edge.entry([a, b]).or_insert_with(|| {
                     let (from, to) = (points[a as usize], points[b as usize]);
+                    let count = count.max(((to - from).norm() * (12 * count) as f64 / size) as usize);
                     let first = points.len();
                     points.extend((1..=count).map(|i| from.lerp(&to, i as f64 / (count + 1) as f64)));
                     (first..points.len()).collect()
@@ -235,8 +237,12 @@ impl SurfaceParam for Facets {
         path: &mut SurfacePath,
         context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
+        context.count_call(Slot::Surface);
         context.proceed()?;
         path.restart(*from);
+        if from == to {
+            return Ok(true);
+        }
         let mut last = *from;
         let mut go = |path: &mut SurfacePath, next: Contact| {
             let turn = last.n_O.cross(&next.n_O).norm().atan2(last.n_O.dot(&next.n_O));
