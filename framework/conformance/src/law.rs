@@ -89,3 +89,9 @@ pub(crate) fn pure<T: Debug>(count: usize, call: impl Fn(usize) -> Finding<T> + 
             .try_for_each(|thread| thread.join().unwrap_or_else(|payload| resume_unwind(payload)))
     })
 }
+
+/// Breaks the law unless one call of the plugin in `slot` was counted.
+pub(crate) fn counted_once(context: &Context<'_>, slot: Slot) -> Finding {
+    let calls = context.tally.calls(slot);
+    ensure(calls == 1, || format!("one call is counted {calls} times in `{}`", slot.name()))
+}

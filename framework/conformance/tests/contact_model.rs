@@ -16,6 +16,7 @@ enum Lie {
     ShrinksAtHighFriction,
     WiderThanCoulomb,
     TwoAreEnough,
+    SpinsOnForEver,
     Counts,
     OtherOnOtherThreads,
     Prints,
@@ -49,6 +50,13 @@ impl ContactModel for Liar {
                 round
             }
             _ => round,
+        }
+    }
+
+    fn spinning_cone(&self, contact: &Contact, mu: f64) -> Cone<'_> {
+        match self.lie {
+            Lie::SpinsOnForEver => Cone::Elliptic { mu, gamma: 1e-3 },
+            _ => self.cone(contact, mu),
         }
     }
 
@@ -89,6 +97,7 @@ fn each_liar_fails_its_check_and_no_other() {
         (liar!(Lie::ShrinksAtHighFriction), "cone-monotone"),
         (liar!(Lie::WiderThanCoulomb), "cone-within-friction"),
         (liar!(Lie::TwoAreEnough), "fewest-contacts"),
+        (liar!(Lie::SpinsOnForEver), "spinning-cone"),
         (liar!(Lie::Counts), "contact-model-pure"),
         (liar!(Lie::OtherOnOtherThreads), "contact-model-pure"),
     ];

@@ -15,6 +15,7 @@ enum Lie {
     KnowsNoBudget,
     GivesUp,
     TriesAgain,
+    CountsTwice,
     OnlyAtHome,
 }
 
@@ -27,6 +28,9 @@ impl GraphStrategy for Liar {
     fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError> {
         let nodes = graph.node_count();
         let (generated, most) = graph.generated();
+        if self.lie != Lie::Nothing {
+            context.count_call(Slot::GraphStrategy);
+        }
         match self.lie {
             Lie::ExtendsNobody if nodes % 17 == 16 && generated < most && context.random.unit() < 0.5 => {
                 Ok(Action::Extend(NodeId(nodes as u32), Link::None))
@@ -40,7 +44,11 @@ impl GraphStrategy for Liar {
                 Ok(Action::Connect(graph.start(), graph.goals()[0], EdgeKind::Grasp))
             }
             Lie::OnlyAtHome if std::thread::current().id() != self.home => Ok(Action::Stop),
-            _ => Interleaving.next(graph, context),
+            Lie::Nothing | Lie::CountsTwice => Interleaving.next(graph, context),
+            _ => {
+                let mut own = Context::new(context.random.clone(), &Uninterrupted);
+                Interleaving.next(graph, &mut own)
+            }
         }
     }
 }
@@ -70,6 +78,7 @@ fn each_liar_fails_its_check_and_no_other() {
         (liar!(Lie::KnowsNoBudget), "strategy-stops"),
         (liar!(Lie::GivesUp), "strategy-goes-on"),
         (liar!(Lie::TriesAgain), "strategy-not-futile"),
+        (liar!(Lie::CountsTwice), "strategy-counted"),
         (liar!(Lie::OnlyAtHome), "strategy-pure"),
     ];
     support::judge(Slot::GraphStrategy, &liar!(Lie::Nothing), &liars, &[]);

@@ -18,6 +18,7 @@ enum Lie {
     NoPathNoMotion,
     AlwaysRefuses,
     CountsNothing,
+    CountsTwice,
     TakesAnyTarget,
     NeverStops,
     OnlyAtHome,
@@ -131,6 +132,7 @@ fn slide_along(
     path: &mut Path,
     context: &mut Context<'_>,
 ) -> Result<Reached, CallError> {
+    context.count_call(Slot::TransferPlanner);
     path.restart(from);
     let mut q = from.clone();
     for step in 1..=20 {
@@ -172,11 +174,13 @@ impl Liar {
         match (self.lie, to) {
             (Lie::AlwaysRefuses, _) if self.fits(to) => {
                 path.restart(from);
+                context.count_call(self.slot);
                 context.reject(self.slot, Reason::Budget);
                 Ok(refused())
             }
             (Lie::OnlyAtHome, _) if self.fits(to) && std::thread::current().id() != self.home => {
                 path.restart(from);
+                context.count_call(self.slot);
                 context.reject(self.slot, Reason::Budget);
                 Ok(refused())
             }
@@ -184,7 +188,12 @@ impl Liar {
                 path.restart(from);
                 Ok(refused())
             }
+            (Lie::CountsTwice, _) => {
+                context.count_call(self.slot);
+                honest(self.slot).connect(task, from, to, Some(path), context)
+            }
             (Lie::CountsNothing, _) => {
+                context.count_call(self.slot);
                 context.proceed()?;
                 honest(self.slot).connect(task, from, to, Some(path), &mut own)
             }
@@ -279,6 +288,7 @@ impl LocalPlanner for Liar {
             if !self.fits(to) {
                 return honest(self.slot).connect(task, from, to, path, context);
             }
+            context.count_call(self.slot);
             let stop = Some(context.reject(self.slot, Reason::Budget));
             return Ok(Reached { end: from.clone(), fraction: 0.0, stop });
         }
@@ -321,6 +331,7 @@ macro_rules! judge_slot {
             (liar!($slot, Lie::NoPathNoMotion), concat!($prefix, "-path-optional")),
             (liar!($slot, Lie::AlwaysRefuses), concat!($prefix, "-succeeds")),
             (liar!($slot, Lie::CountsNothing), concat!($prefix, "-reasons")),
+            (liar!($slot, Lie::CountsTwice), concat!($prefix, "-counted")),
             (liar!($slot, Lie::TakesAnyTarget), concat!($prefix, "-wrong-target")),
             (liar!($slot, Lie::NeverStops), concat!($prefix, "-interrupt")),
             (liar!($slot, Lie::OnlyAtHome), concat!($prefix, "-pure")),

@@ -20,6 +20,7 @@ enum Lie {
     MovesWhatItCloses,
     ErrsOutOfReach,
     CountsNothing,
+    CountsTwice,
     NeverStops,
     OnlyAtHome,
 }
@@ -54,6 +55,42 @@ impl Admissible for AnyGrasp<'_> {
     }
 }
 
+impl Liar {
+    /// Spoils an honest sample.
+    fn spoil(
+        &self,
+        task: &Task<'_>,
+        q: Configuration,
+        pose: PoseRequest<'_>,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Configuration>, CallError> {
+        let mut other = q.clone();
+        match self.lie {
+            Lie::ClosesRoughly => {
+                other.joints[FingerIndex(0)][1] += 1e-4;
+                return Ok(Some(other));
+            }
+            Lie::OnlyAtHome if std::thread::current().id() != self.home => return Ok(None),
+            Lie::LetsOneGo if q.holding().len() == 4 => {
+                other.contacts[FingerIndex(3)] = None;
+                other.joints[FingerIndex(3)] = task.hand.finger(FingerIndex(3)).rest;
+            }
+            Lie::BendsAFreeFinger if q.holding().len() == 3 => {
+                other.joints[FingerIndex(1)][0] = task.hand.finger(FingerIndex(1)).joints[0].upper + 1e-3;
+            }
+            Lie::MovesThePose if matches!(pose, PoseRequest::At(_)) => {
+                let mut X_HO = q.X_HO;
+                X_HO.translation.vector.z += 1e-7;
+                other = self.close(task, &X_HO, &q.contacts, &q, context)?.unwrap_or(other);
+            }
+            _ => return Ok(Some(q)),
+        }
+        // One lie at a time: what it gives is admissible.
+        let fits = task.admissible.admit(task, &other, context)?.is_none();
+        Ok(Some(if fits { other } else { q }))
+    }
+}
+
 impl ClosedChainSampler for Liar {
     fn sample(
         &self,
@@ -66,7 +103,9 @@ impl ClosedChainSampler for Liar {
         let any = AnyGrasp(task.admissible);
         let mut own = Context::new(context.random.clone(), &Uninterrupted);
         match self.lie {
+            Lie::CountsTwice => context.count_call(Slot::Sampler),
             Lie::FindsNothing => {
+                context.count_call(Slot::Sampler);
                 context.proceed()?;
                 context.reject(Slot::Sampler, Reason::Budget);
                 return Ok(None);
@@ -74,6 +113,7 @@ impl ClosedChainSampler for Liar {
             Lie::AdmitsAnything => task.admissible = &any,
             Lie::RepeatsItself => context.random = Random::from_key(0, 0, 0, 0),
             Lie::CountsNothing => {
+                context.count_call(Slot::Sampler);
                 context.proceed()?;
                 return RejectionSampler.sample(&task, pose, holding, &mut own);
             }
@@ -84,38 +124,10 @@ impl ClosedChainSampler for Liar {
             }
             _ => {}
         }
-        let Some(mut q) = RejectionSampler.sample(&task, pose, holding, context)? else { return Ok(None) };
-        match (self.lie, pose) {
-            (Lie::ClosesRoughly, _) => q.joints[FingerIndex(0)][1] += 1e-4,
-            (Lie::LetsOneGo, _) if holding.len() == 4 => {
-                // It rests, as a free finger should.
-                let rest = &task.hand.finger(FingerIndex(3)).rest;
-                let mut other = q.clone();
-                other.contacts[FingerIndex(3)] = None;
-                other.joints[FingerIndex(3)] = *rest;
-                if task.admissible.admit(&task, &other, context)?.is_none() {
-                    q = other;
-                }
-            }
-            (Lie::BendsAFreeFinger, _) if holding.len() == 3 => {
-                let finger = FingerIndex(1);
-                let mut other = q.clone();
-                other.joints[finger][0] = task.hand.finger(finger).joints[0].upper + 1e-3;
-                if task.admissible.admit(&task, &other, context)?.is_none() {
-                    q = other;
-                }
-            }
-            (Lie::MovesThePose, PoseRequest::At(_)) => {
-                let mut X_HO = q.X_HO;
-                X_HO.translation.vector.z += 1e-7;
-                if let Some(other) = self.close(&task, &X_HO, &q.contacts, &q, context)? {
-                    q = other;
-                }
-            }
-            (Lie::OnlyAtHome, _) if std::thread::current().id() != self.home => return Ok(None),
-            _ => {}
+        match RejectionSampler.sample(&task, pose, holding, context)? {
+            Some(q) => self.spoil(&task, q, pose, context),
+            None => Ok(None),
         }
-        Ok(Some(q))
     }
 
     fn close(
@@ -169,6 +181,7 @@ fn each_liar_fails_its_check_and_no_other() {
         (liar!(Lie::MovesWhatItCloses), "close-exact"),
         (liar!(Lie::ErrsOutOfReach), "close-refuses"),
         (liar!(Lie::CountsNothing), "sampler-reasons"),
+        (liar!(Lie::CountsTwice), "sampler-counted"),
         (liar!(Lie::NeverStops), "sampler-interrupt"),
         (liar!(Lie::OnlyAtHome), "sampler-pure"),
     ];

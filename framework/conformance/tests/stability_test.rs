@@ -23,6 +23,7 @@ enum Lie {
     MarginsUpsideDown,
     LiftsEverything,
     PanicsOnEight,
+    CountsNothing,
     OnlyAtHome,
 }
 
@@ -74,10 +75,15 @@ impl StabilityTest for Liar {
         if self.lie == Lie::PanicsOnEight && grasp.contacts().len() == MAX_FINGERS {
             panic!("seven at most");
         }
+        if self.lie == Lie::CountsNothing {
+            let mut own = Context::new(context.random.clone(), &Uninterrupted);
+            return EdgeClosure.test(grasp, hint, &mut own);
+        }
         if self.lie == Lie::TrustsHints && hint.tag == 1 {
             return Ok(Stability::Stable);
         }
         if self.refuses(grasp) {
+            context.count_call(Slot::StabilityTest);
             return Ok(Stability::Unstable);
         }
         match self.lie {
@@ -172,6 +178,7 @@ fn each_liar_fails_its_check_and_no_other() {
         (liar!(Lie::MarginsUpsideDown), "margins"),
         (liar!(Lie::LiftsEverything), "liftable"),
         (liar!(Lie::PanicsOnEight), "unsupported-cones"),
+        (liar!(Lie::CountsNothing), "stability-counted"),
         (liar!(Lie::OnlyAtHome), "stability-pure"),
     ];
     support::judge(Slot::StabilityTest, &liar!(Lie::Nothing), &liars, &[]);

@@ -22,6 +22,7 @@ enum Lie {
     Detours,
     LongerBackwards,
     WalksTooShort,
+    CountsEachLeg,
     KnowsUpAndDown,
     OnlyAtHome,
 }
@@ -99,7 +100,15 @@ impl SurfaceParam for Liar {
         path: &mut SurfacePath,
         context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
+        if self.lie != Lie::CountsEachLeg {
+            context.count_call(Slot::Surface);
+        }
+        let counts = context;
+        let context = &mut Context::new(counts.random.clone(), &Uninterrupted);
         *path = self.path(from, to, context)?;
+        if self.lie == Lie::CountsEachLeg {
+            path.waypoints.iter().for_each(|_| counts.count_call(Slot::Surface));
+        }
         let last = path.waypoints.len() - 1;
         let apart = path.length > 1e-3;
         match self.lie {
@@ -194,6 +203,7 @@ fn each_liar_fails_its_check_and_no_other() {
         (liar!(Lie::Detours), "geodesic-shortest"),
         (liar!(Lie::LongerBackwards), "geodesic-symmetric"),
         (liar!(Lie::WalksTooShort), "walk"),
+        (liar!(Lie::CountsEachLeg), "geodesic-counted"),
         (liar!(Lie::KnowsUpAndDown), "surface-rigid-motion"),
         (liar!(Lie::OnlyAtHome), "surface-pure"),
     ];

@@ -7,8 +7,8 @@
 use super::nonnegative::nonnegative_least_squares;
 use nalgebra::Vector6;
 use regrasp_api::{
-    Assessment, CallError, Certificate, Cone, Context, Grasp, GraspContact, Hint, Stability, StabilityTest,
-    Vec3, any_orthogonal,
+    Assessment, CallError, Certificate, Cone, Context, Grasp, GraspContact, Hint, Slot, Stability,
+    StabilityTest, Vec3, any_orthogonal,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -35,6 +35,16 @@ pub fn closure(grasp: &Grasp<'_>) -> Closure {
         return Closure::Closed;
     }
     if positively_spans(&wrenches(grasp, true)).is_none() { Closure::Open } else { Closure::Near }
+}
+
+/// Whether the contacts can give a force and a torque about the contacts' centroid, however large, inside cones that are a little too wide:
+/// where not, nothing carries that load.
+pub(crate) fn may_give(grasp: &Grasp<'_>, force: &Vec3, torque: &Vec3) -> bool {
+    let (_, length) = center_and_length(grasp);
+    let vectors: Vec<_> = wrenches(grasp, true).iter().map(|w| w.scaled).collect();
+    let m = torque / length;
+    let wish = Vector6::new(force.x, force.y, force.z, m.x, m.y, m.z);
+    nonnegative_least_squares(&vectors, &wish).1.norm() <= 1e-7 * wish.norm()
 }
 
 /// One wrench that a contact can transmit at unit normal force: force, torque about the normal, force with torque about the centroid.
@@ -126,7 +136,13 @@ fn positively_spans(wrenches: &[Wrench]) -> Option<Vec<f64>> {
 pub struct EdgeClosure;
 
 impl StabilityTest for EdgeClosure {
-    fn test(&self, grasp: &Grasp<'_>, _: &mut Hint, _: &mut Context<'_>) -> Result<Stability, CallError> {
+    fn test(
+        &self,
+        grasp: &Grasp<'_>,
+        _: &mut Hint,
+        context: &mut Context<'_>,
+    ) -> Result<Stability, CallError> {
+        context.count_call(Slot::StabilityTest);
         let closed = positively_spans(&wrenches(grasp, false)).is_some();
         Ok(if closed { Stability::Stable } else { Stability::Unstable })
     }

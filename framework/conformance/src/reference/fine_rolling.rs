@@ -83,6 +83,7 @@ impl LocalPlanner for FineRolling {
         mut path: Option<&mut Path>,
         context: &mut Context<'_>,
     ) -> Result<Reached, CallError> {
+        context.count_call(Slot::TransferPlanner);
         let Target::Transfer(to) = to else { return Err(wrong_target(Slot::TransferPlanner)) };
         if let Some(path) = path.as_deref_mut() {
             path.restart(from);

@@ -105,6 +105,7 @@ impl LocalPlanner for GraspLine {
         mut path: Option<&mut Path>,
         context: &mut Context<'_>,
     ) -> Result<Reached, CallError> {
+        context.count_call(Slot::GraspPlanner);
         let Target::Grasp(to) = to else { return Err(wrong_target(Slot::GraspPlanner)) };
         if let Some(path) = path.as_deref_mut() {
             path.restart(from);

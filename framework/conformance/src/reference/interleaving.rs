@@ -1,6 +1,6 @@
 //! The reference strategy: query when joined, connect what was not tried, explore otherwise.
 
-use regrasp_api::{Action, CallError, Context, EdgeKind, GraphStrategy, GraphView, Link, NodeId};
+use regrasp_api::{Action, CallError, Context, EdgeKind, GraphStrategy, GraphView, Link, NodeId, Slot};
 
 /// Explores and connects in turn, half of the time each.
 #[derive(Clone, Copy, Debug, Default)]
@@ -8,6 +8,7 @@ pub struct Interleaving;
 
 impl GraphStrategy for Interleaving {
     fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError> {
+        context.count_call(Slot::GraphStrategy);
         if graph.joined() {
             return Ok(Action::Query);
         }

@@ -56,6 +56,21 @@ impl Regrasp<'_> {
         contact.map_or(Ok(Vec::new()), |contact| self.lift(contact, joints))
     }
 
+    /// Postures between the two lifted ones: over the surface from contact to contact, otherwise straight.
+    fn cross(
+        &self,
+        contact: Option<&Contact>,
+        high: (FingerJoints, FingerJoints),
+        context: &mut Context<'_>,
+    ) -> Result<Result<Vec<FingerJoints>, Reason>, CallError> {
+        let (Some(a), Some(b)) = (&self.from.contacts[self.finger], contact) else {
+            return Ok(self.straight(&high.0, &high.1));
+        };
+        let mut slide = SurfacePath::default();
+        let found = self.task.surface.geodesic(a, b, &mut slide, context)?;
+        Ok(if found { self.follow(&slide, &high.0) } else { Err(Reason::Surface) })
+    }
+
     /// Postures along the geodesic at lift height.
     fn follow(&self, slide: &SurfacePath, near: &FingerJoints) -> Result<Vec<FingerJoints>, Reason> {
         let count = (4.0 * slide.lift_length() / self.task.resolution.regrasp_step).ceil() as usize;
@@ -91,24 +106,13 @@ fn postures(
         return Ok(Err(Reason::Stability));
     }
     let regrasp = Regrasp { task, from, finger };
-    let ends = regrasp
-        .leave(from.contacts[finger].as_ref(), &from.joints[finger])
-        .and_then(|up| Ok((up, regrasp.leave(contact, joints)?)));
-    let (mut way, mut down) = match ends {
+    let up = regrasp.leave(from.contacts[finger].as_ref(), &from.joints[finger]);
+    let (mut way, mut down) = match up.and_then(|up| Ok((up, regrasp.leave(contact, joints)?))) {
         Ok(ends) => ends,
         Err(reason) => return Ok(Err(reason)),
     };
-    let high = *way.last().unwrap_or(&from.joints[finger]);
-    let between = match (&from.contacts[finger], contact) {
-        (Some(a), Some(b)) => {
-            let mut slide = SurfacePath::default();
-            if !task.surface.geodesic(a, b, &mut slide, context)? {
-                return Ok(Err(Reason::Surface));
-            }
-            regrasp.follow(&slide, &high)
-        }
-        _ => regrasp.straight(&high, down.last().unwrap_or(joints)),
-    };
+    let high = (*way.last().unwrap_or(&from.joints[finger]), *down.last().unwrap_or(joints));
+    let between = regrasp.cross(contact, high, context)?;
     Ok(between.map(|between| {
         down.reverse();
         way.extend(between.into_iter().chain(down));
@@ -128,6 +132,7 @@ impl LocalPlanner for LiftOver {
         mut path: Option<&mut Path>,
         context: &mut Context<'_>,
     ) -> Result<Reached, CallError> {
+        context.count_call(Slot::RegraspPlanner);
         let &Target::Regrasp { finger, contact, joints } = to else {
             return Err(wrong_target(Slot::RegraspPlanner));
         };

@@ -17,8 +17,8 @@ mod surface;
 mod walk;
 
 pub use admissible::{Leavable, RoundCones};
-pub(crate) use closure::center_and_length;
 pub use closure::{Closure, EdgeClosure, closure};
+pub(crate) use closure::{center_and_length, may_give};
 pub use fine_rolling::FineRolling;
 pub use geometry::{Closest, closest_on_facet, closest_on_mesh, closest_on_primitive, closest_on_segment};
 pub use grasp_line::GraspLine;

@@ -101,6 +101,7 @@ impl ClosedChainSampler for RejectionSampler {
         holding: FingerSet,
         context: &mut Context<'_>,
     ) -> Result<Option<Configuration>, CallError> {
+        context.count_call(Slot::Sampler);
         for _ in 0..POSES {
             context.proceed()?;
             let X_HO = draw(task, pose, &mut context.random);

@@ -3,7 +3,9 @@
 use super::geometry::{closest_on_facet, closest_on_mesh, closest_on_segment};
 use super::graph_path::SteinerGraph;
 use super::walk;
-use regrasp_api::{CallError, Contact, Context, Mesh, Projection, Random, SurfaceParam, SurfacePath, Vec3};
+use regrasp_api::{
+    CallError, Contact, Context, Mesh, Projection, Random, Slot, SurfaceParam, SurfacePath, Vec3,
+};
 
 /// Edges that bend by more are sharp (rad): 30°.
 const SHARP: f64 = std::f64::consts::PI / 6.0;
@@ -56,8 +58,9 @@ impl SurfaceParam for FacetSurface {
         from: &Contact,
         to: &Contact,
         path: &mut SurfacePath,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
+        context.count_call(Slot::Surface);
         path.restart(*from);
         if from == to {
             return Ok(true);

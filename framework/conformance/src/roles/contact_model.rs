@@ -25,6 +25,11 @@ pub(crate) const LAWS: &[Law] = &[
         check: cone_within_friction,
     },
     Law {
+        name: "spinning-cone",
+        why: "a contact that spins transmits no torsion, and no more of anything than one at rest",
+        check: spinning_cone,
+    },
+    Law {
         name: "fewest-contacts",
         why: "the planner searches in GS_n with n one more: too few finds nothing, too many wastes fingers",
         check: fewest_contacts,
@@ -119,6 +124,26 @@ fn cone_within_friction(subject: &Subject<'_>) -> Finding {
                 let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 64.0).sin_cos();
                 let reach = support(&model.cone(&contact, mu), &Vec3::new(cos, sin, 0.0));
                 ensure(reach <= mu + 1e-9, || format!("tangential forces up to {reach} at μ = {mu}"))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn spinning_cone(subject: &Subject<'_>) -> Finding {
+    let model = build(subject)?;
+    for contact in contacts() {
+        for mu in FRICTIONS {
+            // Frictionless contacts may stand in for cones whose torsion cannot be told apart.
+            let spinning = model.spinning_cone(&contact, mu);
+            ensure(!spinning.carries_torsion(), || format!("{spinning:?} at μ = {mu} carries torsion"))?;
+            for w in directions() {
+                let (low, high) = (support(&spinning, &w), support(&model.cone(&contact, mu), &w));
+                ensure(low <= high + 1e-12, || {
+                    format!(
+                        "along {w:?} the spinning cone reaches {low}, the resting one {high}, at μ = {mu}"
+                    )
+                })?;
             }
         }
     }

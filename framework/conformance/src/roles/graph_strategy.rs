@@ -1,9 +1,9 @@
 //! The laws of graph strategies, tried on made-up graphs.
 
 use crate::fixtures::{Bench, Outcome, SquareGraph, Weather};
-use crate::law::{Law, Subject, context, pure};
+use crate::law::{Law, Subject, context, counted_once, pure};
 use crate::report::{Fault, Finding, broken, ensure};
-use regrasp_api::{Action, Build, GraphStrategy, GraphView};
+use regrasp_api::{Action, Build, GraphStrategy, GraphView, Slot};
 
 pub(crate) const LAWS: &[Law] = &[
     Law {
@@ -30,6 +30,11 @@ pub(crate) const LAWS: &[Law] = &[
         name: "strategy-not-futile",
         why: "the same attempt again has the same result, for ever",
         check: not_futile,
+    },
+    Law {
+        name: "strategy-counted",
+        why: "every call is counted once, by the plugin itself, or the statistics of a run are wrong",
+        check: counted,
     },
     Law {
         name: "strategy-pure",
@@ -143,6 +148,17 @@ fn not_futile(subject: &Subject<'_>) -> Finding {
             futile = if is_futile(graph, action) { futile + 1 } else { 0 };
             ensure(futile <= PATIENCE, || format!("{futile} times in a row to no effect: {action:?}"))
         })?;
+    }
+    Ok(())
+}
+
+fn counted(subject: &Subject<'_>) -> Finding {
+    let (strategy, mut joined) = (build(subject)?, SquareGraph::new(FAIR, 8));
+    joined.join();
+    for graph in [SquareGraph::new(FAIR, 8), joined] {
+        let mut context = context(8);
+        strategy.next(&graph, &mut context)?;
+        counted_once(&context, Slot::GraphStrategy)?;
     }
     Ok(())
 }

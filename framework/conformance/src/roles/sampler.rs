@@ -1,7 +1,7 @@
 //! The laws of samplers.
 
 use crate::fixtures::{Bench, to_object};
-use crate::law::{Always, Law, Subject, context, pure, random};
+use crate::law::{Always, Law, Subject, context, counted_once, pure, random};
 use crate::reference::{RejectionSampler, closest_on_mesh};
 use crate::report::{Finding, broken, ensure};
 use regrasp_api::{
@@ -47,6 +47,11 @@ pub(crate) const LAWS: &[Law] = &[
         name: "sampler-reasons",
         why: "a search that fails is explained by its counted rejections",
         check: counts_reasons,
+    },
+    Law {
+        name: "sampler-counted",
+        why: "every call is counted once, by the plugin itself, or the statistics of a run are wrong",
+        check: counted,
     },
     Law { name: "sampler-interrupt", why: "Ctrl-C and deadlines end a run soon", check: interrupt },
     Law {
@@ -240,6 +245,17 @@ fn counts_reasons(subject: &Subject<'_>) -> Finding {
         ensure(found.is_none(), || format!("a sample a metre away: {found:?}"))?;
         let counted: u64 = Reason::ALL.iter().map(|&r| context.tally.rejections(Slot::Sampler, r)).sum();
         ensure(counted > 0, || "finds nothing and counts no reason".into())?;
+    }
+    Ok(())
+}
+
+fn counted(subject: &Subject<'_>) -> Finding {
+    let bench = Bench::free_sphere();
+    let sampler = build(subject, bench)?;
+    for request in [PoseRequest::Anywhere, PoseRequest::At(Pose::translation(0.0, 0.0, 1.0))] {
+        let mut context = context(0);
+        sampler.sample(&bench.task(), request, FingerSet::first(4), &mut context)?;
+        counted_once(&context, Slot::Sampler)?;
     }
     Ok(())
 }

@@ -2,8 +2,8 @@
 
 use super::case::{Goal, cases};
 use super::{Kind, build, journeys};
-use crate::law::{Always, Subject, context, pure, random};
-use crate::report::{Fault, Finding, ensure};
+use crate::law::{Always, Subject, context, counted_once, pure, random};
+use crate::report::{Finding, ensure};
 use regrasp_api::{
     BodyPair, CallError, Clearance, Configuration, Context, FingerIndex, FingerJoints, FingerSet,
     PairDistance, Path, Pose, Reason, Slot, Task, TipRule,
@@ -98,11 +98,8 @@ impl Clearance for Crowded {
 }
 
 pub(super) fn reasons<K: Kind>(subject: &Subject<'_>) -> Finding {
-    for case in cases(K::SLOT).iter().filter(|case| !case.easy) {
-        let planner = match build(subject, case) {
-            Err(Fault::Skip(_)) => continue,
-            built => built?,
-        };
+    for case in journeys::<K>(subject)?.iter().map(|journey| journey.case).filter(|case| !case.easy) {
+        let planner = build(subject, case)?;
         let task = Task { clearance: &Crowded, ..case.bench.task() };
         for path in [None, Some(&mut Path::default())] {
             let mut context = context(0);
@@ -113,6 +110,16 @@ pub(super) fn reasons<K: Kind>(subject: &Subject<'_>) -> Finding {
                 format!("one refusal for {reason:?}, {counted} counted in its slot")
             })?;
         }
+    }
+    Ok(())
+}
+
+pub(super) fn counted<K: Kind>(subject: &Subject<'_>) -> Finding {
+    for case in journeys::<K>(subject)?.iter().map(|journey| journey.case) {
+        let mut context = context(0);
+        let (task, target) = (case.bench.task(), case.goal.target());
+        build(subject, case)?.connect(&task, &case.from, &target, None, &mut context)?;
+        counted_once(&context, K::SLOT)?;
     }
     Ok(())
 }

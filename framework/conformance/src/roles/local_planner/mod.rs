@@ -9,7 +9,7 @@ mod way;
 use crate::law::{Law, Subject, context};
 use crate::report::{Finding, broken};
 use case::{Case, cases};
-use regrasp_api::{Build, BuildError, LocalPlanner, Path, Reached, Slot};
+use regrasp_api::{Build, BuildError, CallError, LocalPlanner, Path, Reached, Slot};
 use std::rc::Rc;
 
 /// What the plugin made of one problem.
@@ -71,6 +71,11 @@ macro_rules! laws {
                 name: concat!($prefix, "-reasons"),
                 why: "a search that fails is explained by its counted refusals",
                 check: answer::reasons::<$kind>,
+            },
+            Law {
+                name: concat!($prefix, "-counted"),
+                why: "every call is counted once, by the plugin itself, or the statistics of a run are wrong",
+                check: answer::counted::<$kind>,
             },
             Law {
                 name: concat!($prefix, "-wrong-target"),
@@ -188,7 +193,11 @@ fn journeys<K: Kind>(subject: &Subject<'_>) -> Finding<Rc<Vec<Journey>>> {
         let mut path = Path::default();
         let (task, target) = (case.bench.task(), case.goal.target());
         let reached =
-            planner.connect(&task, &case.from, &target, Some(&mut path), &mut context(key as u64))?;
+            match planner.connect(&task, &case.from, &target, Some(&mut path), &mut context(key as u64)) {
+                // The plugin's law is for other hands or contact models: it says so, and is tried on the rest.
+                Err(CallError::Unsupported { .. }) => continue,
+                reached => reached?,
+            };
         made.push(Journey { case, reached, path });
     }
     if made.is_empty() {

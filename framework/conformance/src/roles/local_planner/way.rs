@@ -58,7 +58,11 @@ pub(super) fn stays_stable<K: Kind>(subject: &Subject<'_>) -> Finding {
         let states = if journey.path.states.len() > 1 { &journey.path.states[..] } else { &[] };
         for (i, q) in states.iter().enumerate() {
             let holding = moving(journey).map_or(q.holding(), |finger| q.holding().without(finger));
-            let grasp = journey.case.bench.task().grasp(q, holding);
+            let task = journey.case.bench.task();
+            let grasp = match moving(journey) {
+                Some(_) => task.grasp(q, holding),
+                None => task.transfer_grasp(q, holding),
+            };
             ensure(closure(&grasp) != Closure::Open, || {
                 format!("the fingers {holding:?} do not hold the object in state {i} of {}", states.len())
             })?;

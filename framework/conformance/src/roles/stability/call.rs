@@ -2,12 +2,12 @@
 
 use crate::fixtures::Bench;
 use crate::fixtures::grasps::{self, Touch, grasp_of};
-use crate::law::{Subject, context, pure, random};
-use crate::reference::{Closure, closure};
+use crate::law::{Subject, context, counted_once, pure, random};
+use crate::reference::{Closure, center_and_length, closure, may_give};
 use crate::report::{Finding, broken, ensure};
 use regrasp_api::{
-    Build, CallError, Cone, ConeEdge, FingerIndex, FingerSet, Grasp, GraspContact, Hint, Stability,
-    StabilityTest, Vec3,
+    Build, CallError, Cone, ConeEdge, Criterion, FingerIndex, FingerSet, Grasp, GraspContact, Hint, Load,
+    Slot, Stability, StabilityTest, Vec3,
 };
 
 /// The plugin under test.
@@ -64,6 +64,32 @@ pub(super) fn no_false_stable(subject: &Subject<'_>) -> Finding {
             ensure(!wrong, || format!("calls a grasp stable that is not: {touches:?}"))?;
         }
     }
+    match test.criterion() {
+        Criterion::Equilibrium(load) => no_false_carrying(&*test, &load),
+        _ => Ok(()),
+    }
+}
+
+/// Where stable means that a load is carried: one that no forces inside the cones can carry is not, whatever their size.
+fn no_false_carrying(test: &dyn StabilityTest, load: &Load) -> Finding {
+    let (mut random, bench) = (random(17), Bench::free_sphere());
+    let object = &bench.world.object;
+    for i in 0..400 {
+        let touches = grasps::random(&mut random, 1 + i % 5);
+        let mut grasp = grasp_of(&touches);
+        grasp.g_O = random.direction() * 9.81;
+        if !verdict(test, &grasp)?.is_some_and(Stability::is_stable) {
+            continue;
+        }
+        let lever = object.p_OCm - center_and_length(&grasp).0;
+        for direction in [Vec3::zeros(), random.direction(), random.direction(), random.direction()] {
+            let weight = grasp.g_O * -object.mass;
+            let push = weight + direction * load.disturbance_force;
+            let twisted = lever.cross(&weight) + direction * load.disturbance_torque;
+            let carried = may_give(&grasp, &push, &lever.cross(&push)) && may_give(&grasp, &weight, &twisted);
+            ensure(carried, || format!("says that {touches:?} carry a load, g = {:?}", grasp.g_O))?;
+        }
+    }
     Ok(())
 }
 
@@ -89,8 +115,12 @@ pub(super) fn hint_never_decides(subject: &Subject<'_>) -> Finding {
         let mut strange = Hint { tag: random.index(4) as u64, values: [odd[random.index(odd.len())]; 8] };
         for hint in [&mut carried, &mut noise, &mut strange] {
             let before = *hint;
-            let Ok(hinted) = test.test(&grasp, hint, &mut context(0)) else { continue };
-            ensure(Some(hinted) == plain, || {
+            let hinted = match test.test(&grasp, hint, &mut context(0)) {
+                Ok(stability) => Some(stability),
+                Err(CallError::Unsupported { .. }) => None,
+                Err(error) => return Err(error.into()),
+            };
+            ensure(hinted == plain, || {
                 format!("{plain:?} without hint, {hinted:?} with {before:?}: {touches:?}")
             })?;
         }
@@ -167,6 +197,17 @@ fn answers(test: &dyn StabilityTest, grasp: &Grasp<'_>) -> Finding {
         Ok(_) | Err(CallError::Unsupported { .. }) => Ok(()),
         Err(error) => Err(error.into()),
     }
+}
+
+pub(super) fn counted(subject: &Subject<'_>) -> Finding {
+    let test = build(subject)?;
+    for touches in grasps::good().iter().chain(&grasps::never_closed()) {
+        let mut context = context(0);
+        if test.test(&grasp_of(touches), &mut Hint::default(), &mut context).is_ok() {
+            counted_once(&context, Slot::StabilityTest)?;
+        }
+    }
+    Ok(())
 }
 
 pub(super) fn stability_pure(subject: &Subject<'_>) -> Finding {

@@ -65,6 +65,11 @@ pub(crate) const LAWS: &[Law] = &[
         check: call::unsupported_cones,
     },
     Law {
+        name: "stability-counted",
+        why: "every call is counted once, by the plugin itself, or the statistics of a run are wrong",
+        check: call::counted,
+    },
+    Law {
         name: "stability-pure",
         why: "threads share the test, and the same plan must come out on any number of them",
         check: call::stability_pure,

@@ -26,7 +26,7 @@ pub(super) fn margins(subject: &Subject<'_>) -> Finding {
     for (touches, found) in assessments(subject)? {
         let (lower, upper) = (found.margin_lower, found.margin_upper);
         let text = || format!("{:?} with a margin of {lower} to {upper}: {touches:?}", found.stability);
-        ensure(!lower.is_nan() && lower <= upper * (1.0 + 1e-9) + 1e-12, text)?;
+        ensure(!lower.is_nan() && lower <= upper + 1e-9 * upper.abs() + 1e-12, text)?;
         ensure(found.stability.is_stable() || lower <= 0.0, text)?;
     }
     Ok(())

@@ -66,6 +66,11 @@ pub(crate) const LAWS: &[Law] = &[
         check: motion::rigid_motion,
     },
     Law {
+        name: "geodesic-counted",
+        why: "every call is counted once, by the plugin itself, or the statistics of a run are wrong",
+        check: path::counted,
+    },
+    Law {
         name: "surface-pure",
         why: "threads share the surface, and the same plan must come out on any number of them",
         check: motion::surface_pure,

@@ -2,10 +2,10 @@
 
 use super::ground::{Ground, on_each};
 use super::point::is_contact;
-use crate::law::{Subject, context};
+use crate::law::{Subject, context, counted_once};
 use crate::reference::FacetSurface;
 use crate::report::{Fault, Finding, ensure};
-use regrasp_api::{Contact, Primitive, SurfaceParam, SurfacePath, Waypoint};
+use regrasp_api::{Contact, Primitive, Slot, SurfaceParam, SurfacePath, Waypoint};
 
 /// Pairs of contacts on each object.
 const PAIRS: usize = 18;
@@ -153,5 +153,13 @@ pub(super) fn symmetric(subject: &Subject<'_>) -> Finding {
         ensure((path.length - back.length).abs() <= tolerance * path.length + 1e-9, || {
             format!("{} m there, {} m back: {from:?} {to:?}", path.length, back.length)
         })
+    })
+}
+
+pub(super) fn counted(subject: &Subject<'_>) -> Finding {
+    on_each(subject, |ground| {
+        let ((from, to), mut context) = (ground.pairs(53, 2)[1], context(0));
+        ground.surface.geodesic(&from, &to, &mut SurfacePath::default(), &mut context)?;
+        counted_once(&context, Slot::Surface)
     })
 }
