@@ -7,7 +7,7 @@
 //! worth: among obstacles a third of the regrasps that are needed; on free objects hardly any, and each hopeless one costs nothing.
 //!
 //! ```toml
-//! [plugins."local-planner.regrasp"]
+//! [plugins.local-planner.regrasp]
 //! use = "local-planner/lift-slide-touch"
 //! heights = 3
 //! ```

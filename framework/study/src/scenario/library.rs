@@ -18,11 +18,12 @@ macro_rules! built_in {
 /// The scenarios, the paper's three problems first.
 pub const SCENARIOS: &[BuiltIn] = built_in!(
     "": "sphere", "cubic", "ellip-obst", "sphere-tilt", "sphere-free", "cube-free", "ellipsoid-free",
+    "sphere-points", "sphere-soft", "sphere-five", "ring", "bracket",
 );
 
 /// The hands.
 pub const HANDS: &[BuiltIn] =
-    built_in!("hands/": "four-finger", "five-finger", "three-finger", "free-fingertips");
+    built_in!("hands/": "four-finger", "five-finger", "three-finger", "free-fingertips", "free-points");
 
 /// The built-in file with this name.
 pub fn find(files: &'static [BuiltIn], name: &str) -> Option<&'static BuiltIn> {

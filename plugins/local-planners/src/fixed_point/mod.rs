@@ -14,7 +14,7 @@
 //! ends where rolling would not: with the contacts it began with.
 //!
 //! ```toml
-//! [plugins."local-planner.transfer"]
+//! [plugins.local-planner.transfer]
 //! use = "local-planner/fixed-point"
 //! ```
 
@@ -184,7 +184,7 @@ regrasp_api::inventory::submit! {
         check: check_settings::<FixedPointSettings>,
         build: Build::LocalPlanner(|json, parts| {
             let settings = FixedPointSettings::from_json(json)?;
-            demand_fingertip(ID, Fingertip::Point, parts.hand)?;
+            demand_fingertip(Fingertip::Point, parts.hand)?;
             Ok(Box::new(FixedPoint::new(settings, parts.hand)?))
         }),
     }

@@ -170,7 +170,7 @@ regrasp_api::inventory::submit! {
         schema: RollingSettings::schema,
         check: check_settings::<RollingSettings>,
         build: Build::LocalPlanner(|json, parts| {
-            demand_fingertip(ID, Fingertip::Ball, parts.hand)?;
+            demand_fingertip(Fingertip::Ball, parts.hand)?;
             Ok(Box::new(Rolling::new(RollingSettings::from_json(json)?, parts.hand)?))
         }),
     }

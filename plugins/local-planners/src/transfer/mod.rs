@@ -7,18 +7,18 @@ pub(crate) use motion::Motion;
 pub(crate) use pace::Pace;
 use regrasp_api::{BuildError, Fingertip, Hand};
 
-/// Refuses a hand whose fingertips are not what the plugin `id` moves, and says what to use.
-pub(crate) fn demand_fingertip(id: &str, wanted: Fingertip, hand: &dyn Hand) -> Result<(), BuildError> {
+/// Refuses a hand whose fingertips are not what a plugin moves, and says what to use.
+pub(crate) fn demand_fingertip(wanted: Fingertip, hand: &dyn Hand) -> Result<(), BuildError> {
     let refusal = match (wanted, hand.fingertip()) {
-        (Fingertip::Ball, Fingertip::Point) => format!(
-            "`{id}` rolls balls, and the hand declares point fingertips, which stay where they are set down; use `local-planner/fixed-point`, or \
-             take `fingertip = \"point\"` out of the hand's file"
-        ),
-        (Fingertip::Point, Fingertip::Ball) => format!(
-            "`{id}` keeps contact points where they are, and the hand's fingertips are balls, which roll; use `local-planner/rolling`, or declare \
-             `fingertip = \"point\"` in the hand's file"
-        ),
+        (Fingertip::Ball, Fingertip::Point) => {
+            "it rolls balls, and the hand declares point fingertips, which stay where they are set down; use \
+             `local-planner/fixed-point`, or take `fingertip = \"point\"` out of the hand's file"
+        }
+        (Fingertip::Point, Fingertip::Ball) => {
+            "it keeps contact points where they are, and the hand's fingertips are balls, which roll; use \
+             `local-planner/rolling`, or declare `fingertip = \"point\"` in the hand's file"
+        }
         _ => return Ok(()),
     };
-    Err(BuildError::Unsupported(refusal))
+    Err(BuildError::Unsupported(refusal.into()))
 }
