@@ -45,10 +45,7 @@ fn settings_of_a_loaded_plugin_are_checked_like_any_others() {
     };
     let said = plan("contact-model.factor=3");
     assert_eq!(said.code, Some(2), "{said:?}");
-    assert!(
-        said.err.contains("contact-model/mine") && said.err.contains("`factor` = 3 is outside 0.1..=1"),
-        "{said:?}"
-    );
+    assert!(said.err.contains("contact-model/mine") && said.err.contains("outside 0.1..=1"), "{said:?}");
     let said = plan("contact-model.factr=0.5");
     assert!(said.code == Some(2) && said.err.contains("did you mean `factor`?"), "{said:?}");
 }
