@@ -1,6 +1,7 @@
 //! What a plan claims of its contacts and grasps: the verifier holds it to that.
 
 use regrasp_api::{Cone, Fingertip, ObjectModel};
+pub use regrasp_api::{Criterion, Load};
 use serde::{Deserialize, Serialize};
 
 /// What the plan claims.
@@ -9,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct Claims {
     /// Which wrenches each contact transmits.
     pub contact: ContactClaim,
-    /// What makes a grasp stable.
+    /// What makes a grasp stable: closure, or equilibrium with the object's weight (mass and gravity are the scenario's) and a load.
     pub criterion: Criterion,
     /// How contacts move in a transfer.
     pub transfer_law: TransferLaw,
@@ -45,16 +46,6 @@ impl ConeClaim {
             Cone::Polyhedral(_) => None,
         }
     }
-}
-
-/// What makes a grasp stable.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Criterion {
-    /// Force closure: the contacts resist every small wrench.
-    #[default]
-    Closure,
 }
 
 /// How contacts move in a transfer.

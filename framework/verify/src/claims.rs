@@ -7,7 +7,17 @@ use regrasp_plan::{ConeClaim, Criterion, MarginFrame, Place, Plan, TransferLaw};
 /// The contact models that the verifier knows.
 const KNOWN: [&str; 3] = ["contact-model/pcwf", "contact-model/frictionless", "contact-model/soft-finger"];
 
-/// Checks the claims against the scenario: the contact model that was used, no more friction than the object has, the object's own centre and length.
+/// The stability test that holds a load.
+const EQUILIBRIUM: &str = "stability-test/equilibrium";
+/// The stability tests that decide closure.
+const CLOSURE: [&str; 4] = [
+    "stability-test/force-closure",
+    "stability-test/socp",
+    "stability-test/linearised",
+    "stability-test/wrench-ball",
+];
+
+/// Checks the claims against the scenario: the contact model that was used, no more friction than the object has, the criterion of the test that was used, the object's own centre and length.
 pub(crate) fn claims(plan: &Plan, object: &ObjectModel) -> Check {
     let mut gauge = Gauge::faults("claims");
     let mut fault = |note: String| gauge.fault(|| Place { note: Some(note), ..Default::default() });
@@ -29,8 +39,8 @@ pub(crate) fn claims(plan: &Plan, object: &ObjectModel) -> Check {
     if !frame_agrees(&plan.claims.margin, object) {
         fault("margins must be measured about the object's centre of mass, in its largest radius".into());
     }
-    if plan.claims.criterion != Criterion::Closure {
-        fault("only force closure can be checked".into());
+    if let Some(note) = wrong_criterion(plan) {
+        fault(note);
     }
     let fingertip = plan.scenario.problem.hand.fingertip;
     if plan.claims.transfer_law != TransferLaw::of_fingertips(fingertip) {
@@ -71,6 +81,31 @@ fn wrong_cone(model: &str, cone: &ConeClaim, plan: &Plan, friction: f64) -> Opti
                 .then(|| format!("a torsional radius of {gamma} m is claimed, the scenario sets {set:?}"))
         }
         _ => None,
+    }
+}
+
+/// What is wrong with the claimed criterion, if anything: it must be no weaker than what the scenario's test demands.
+fn wrong_criterion(plan: &Plan) -> Option<String> {
+    let choice = plan.scenario.plugins.get(&Slot::StabilityTest);
+    let id = choice.map_or("", |choice| choice.id.as_str());
+    let claimed = &plan.claims.criterion;
+    match claimed {
+        Criterion::Closure if id == EQUILIBRIUM => {
+            Some(format!("closure is claimed, the scenario's test is `{id}`"))
+        }
+        Criterion::Closure => None,
+        Criterion::Equilibrium(_) if CLOSURE.contains(&id) => {
+            Some(format!("equilibrium is claimed, the scenario's test is `{id}`"))
+        }
+        Criterion::Equilibrium(load) if id == EQUILIBRIUM => {
+            let set = |key: &str| choice.and_then(|choice| choice.settings.get(key)?.as_f64());
+            let agrees = set("disturbance_force").is_some_and(|x| load.disturbance_force >= x)
+                && set("disturbance_torque").is_some_and(|x| load.disturbance_torque >= x)
+                && set("max_normal_force").is_some_and(|x| load.max_normal_force <= x);
+            (!agrees).then(|| format!("a load is claimed that is less than the scenario sets for `{id}`"))
+        }
+        Criterion::Equilibrium(_) => None,
+        _ => Some("a criterion is claimed that cannot be checked".into()),
     }
 }
 

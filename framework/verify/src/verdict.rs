@@ -47,7 +47,8 @@ pub struct Check {
     pub worst: Option<f64>,
     /// The value that `worst` may not pass.
     pub limit: f64,
-    /// The unit of both: `m`, `rad`, `s`, `of the limit`, `faults`, `force` (fraction of the total normal force).
+    /// The unit of both: `m`, `rad`, `s`, `of the limit`, `faults`, `force` (fraction of the total normal force; of the largest
+    /// allowed one where the plan claims equilibrium).
     pub unit: &'static str,
     /// Where the worst value is reached.
     #[serde(rename = "where")]

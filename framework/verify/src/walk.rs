@@ -9,7 +9,7 @@ use crate::stability::StabilityCheck;
 use crate::track::{self, Frames, Leg, SAMPLES};
 use crate::verdict::{Gauge, Verdict};
 use crate::{claims, ends, motion_checks};
-use regrasp_api::{MAX_FINGERS, ObjectModel, ObjectShape, Problem, Tolerances};
+use regrasp_api::{MAX_FINGERS, ObjectModel, ObjectShape, Problem, Tolerances, Vec3};
 use regrasp_plan::{Place, Plan, PlanCertificate};
 use std::path::Path;
 
@@ -32,8 +32,8 @@ use std::path::Path;
 /// | `contact-jumps` | no contact point jumps in a transfer |
 /// | `lift`, `touch-travel` | a moving fingertip rises until it is lifted, and does not slide while it touches |
 /// | `clearance` | every pair that may not touch keeps its distance, also between the samples |
-/// | `stability` | the fingers that hold prove force closure at every sample; in a regrasp the others do, both ends included |
-/// | `claims` | the contacts claimed agree with the scenario |
+/// | `stability` | the fingers that hold prove force closure, or what else the plan claims: forces that hold the load, at every sample; in a regrasp the others do, both ends included |
+/// | `claims` | the contacts and the criterion claimed agree with the scenario |
 /// | `start`, `goals`, `complete` | the plan starts at the start, reaches the goals that it claims, and these are all |
 ///
 /// Cost: about 0.1 ms for a state of four fingers on one core.
@@ -112,7 +112,7 @@ impl Walk<'_> {
             contacts: ContactChecks::new(self.hand, self.scene, tolerances, self.plan.claims.transfer_law),
             clearance: ClearanceCheck::new(self.hand, self.scene, tolerances.clearance),
             lift: LiftCheck::new(self.hand, self.scene, tolerances, lift),
-            stability: StabilityCheck::new(&self.plan.claims),
+            stability: StabilityCheck::new(&self.plan.claims, self.weight_H()),
         };
         let mut frames = vec![Frames::new(self.hand); SAMPLES + 1];
         let mut touches = [[None; MAX_FINGERS]; SAMPLES + 1];
@@ -120,6 +120,11 @@ impl Walk<'_> {
             self.segment(leg, &mut sampled, &mut frames, &mut touches);
         }
         self.gather(sampled, tolerances)
+    }
+
+    /// The object's weight in the hand's frame (N).
+    fn weight_H(&self) -> Vec3 {
+        Vec3::from(self.plan.scenario.problem.gravity) * self.object.mass
     }
 
     /// The segment's first state.
@@ -135,7 +140,7 @@ impl Walk<'_> {
         sampled.lift.start();
         frames.place(self.hand, leg, 0, 0.0);
         *touches = sampled.contacts.sample(leg, 0, 0, frames);
-        sampled.stability.sample(leg, 0, 0, touches);
+        sampled.stability.sample(leg, 0, 0, &frames.X_HO.rotation, touches);
         sampled.clearance.start(leg, frames);
         if let Some(finger) = leg.moving {
             sampled.lift.sample(finger, 0, 0, frames);
@@ -159,7 +164,8 @@ impl Walk<'_> {
                 let stated = sample == SAMPLES;
                 if leg.moving.is_none() || stated {
                     touches[sample] = sampled.contacts.sample(leg, state, sample, &frames[sample]);
-                    sampled.stability.sample(leg, state, sample, &touches[sample]);
+                    let R_HO = &frames[sample].X_HO.rotation;
+                    sampled.stability.sample(leg, state, sample, R_HO, &touches[sample]);
                 } else {
                     touches[sample] = touches[0];
                 }

@@ -3,8 +3,8 @@
 use super::{RunError, Setup};
 use regrasp_api::{Contact, GoalDescription, Pose, angle_between};
 use regrasp_plan::{
-    Claims, ConeClaim, ContactClaim, Criterion, Format, MarginFrame, Motion, Plan, PluginChoice,
-    ResolvedScenario, StoppedBy, TransferLaw, VERSION,
+    Claims, ConeClaim, ContactClaim, Format, MarginFrame, Motion, Plan, PluginChoice, ResolvedScenario,
+    StoppedBy, TransferLaw, VERSION,
 };
 use regrasp_planner::Outcome;
 use serde_json::Value;
@@ -60,7 +60,7 @@ impl Setup<'_> {
         let model = self.choices.choice(regrasp_api::Slot::ContactModel).id.clone();
         Claims {
             contact: ContactClaim { model, cone },
-            criterion: Criterion::Closure,
+            criterion: self.plugins.stability.criterion(),
             transfer_law: TransferLaw::of_fingertips(self.hand().fingertip()),
             margin: MarginFrame::of_object(object),
         }

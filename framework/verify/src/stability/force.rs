@@ -26,7 +26,7 @@ pub(crate) struct Contact {
 
 impl Contact {
     /// The wrench (force, torque) of a force in scaled coordinates.
-    fn wrench(&self, y: &Force) -> Vector6<f64> {
+    pub(crate) fn wrench(&self, y: &Force) -> Vector6<f64> {
         let force = self.n * y.normal + y.tangential * self.mu;
         let torque = self.r.cross(&force) + self.n * (self.gamma * y.spin);
         stack(&force, &torque)
@@ -62,7 +62,7 @@ pub(crate) struct Force {
 
 impl Force {
     /// How far inside its cone the force is; negative outside.
-    fn slack(&self) -> f64 {
+    pub(crate) fn slack(&self) -> f64 {
         self.normal - self.tangential.norm().hypot(self.spin)
     }
 }
@@ -81,30 +81,53 @@ pub(crate) struct Proof {
 /// Tries to prove the grasp force closure with `forces` found somewhere else, such as at a grasp close by: takes them to this grasp's
 /// normals, balances them by the smallest correction, and checks.
 pub(crate) fn prove(contacts: &[Contact], forces: &Forces) -> Option<Proof> {
-    let mut forces = *forces;
-    let mut gram = Matrix6::zeros();
-    let mut residual = Vector6::zeros();
-    for (contact, force) in contacts.iter().zip(&mut forces) {
-        force.tangential -= contact.n * contact.n.dot(&force.tangential);
-        contact.accumulate(&mut gram, 1.0, 1.0);
-        residual += contact.wrench(force);
+    let correction = Correction::new(contacts)?;
+    let forces = correction.towards(contacts, forces, &Vector6::zeros());
+    check(contacts, &forces, &correction)
+}
+
+/// Corrects forces so that their wrench is a wanted one.
+pub(crate) struct Correction {
+    factor: Cholesky<f64, nalgebra::U6>,
+    /// A lower bound of the grasp map's smallest singular value: 1/‖(G Gᵀ)⁻¹‖ ≤ λ_min(G Gᵀ).
+    pub(crate) singular: f64,
+}
+
+impl Correction {
+    /// `None` where the grasp map has no rank 6.
+    pub(crate) fn new(contacts: &[Contact]) -> Option<Self> {
+        let mut gram = Matrix6::zeros();
+        contacts.iter().for_each(|contact| contact.accumulate(&mut gram, 1.0, 1.0));
+        let factor = Cholesky::new(gram)?;
+        let singular = 1.0 / factor.inverse().norm().sqrt();
+        (singular >= LEAST_SINGULAR).then_some(Self { factor, singular })
     }
-    // G Gᵀ λ = G y; y - Gᵀ λ is the balanced force closest to y.
-    let factor = Cholesky::new(gram)?;
-    let lambda = factor.solve(&residual);
-    let (a, b) = (lambda.fixed_rows::<3>(0).into_owned(), lambda.fixed_rows::<3>(3).into_owned());
-    for (contact, force) in contacts.iter().zip(&mut forces) {
-        let v = a + b.cross(&contact.r);
-        let v_n = contact.n.dot(&v);
-        force.normal -= v_n;
-        force.tangential -= (v - contact.n * v_n) * contact.mu;
-        force.spin -= b.dot(&contact.n) * contact.gamma;
+
+    /// The forces closest to `forces` that lie in these contacts' planes and have the wanted wrench.
+    ///
+    /// G Gᵀ λ = G y - wanted; y - Gᵀ λ has it.
+    pub(crate) fn towards(&self, contacts: &[Contact], forces: &Forces, wanted: &Vector6<f64>) -> Forces {
+        let mut forces = *forces;
+        let mut residual = -wanted;
+        for (contact, force) in contacts.iter().zip(&mut forces) {
+            force.tangential -= contact.n * contact.n.dot(&force.tangential);
+            residual += contact.wrench(force);
+        }
+        let lambda = self.factor.solve(&residual);
+        let (a, b) = (lambda.fixed_rows::<3>(0).into_owned(), lambda.fixed_rows::<3>(3).into_owned());
+        for (contact, force) in contacts.iter().zip(&mut forces) {
+            let v = a + b.cross(&contact.r);
+            let v_n = contact.n.dot(&v);
+            force.normal -= v_n;
+            force.tangential -= (v - contact.n * v_n) * contact.mu;
+            force.spin -= b.dot(&contact.n) * contact.gamma;
+        }
+        forces
     }
-    check(contacts, &forces, &factor)
 }
 
 /// The proof itself: residual, cones, rank.
-fn check(contacts: &[Contact], forces: &Forces, factor: &Cholesky<f64, nalgebra::U6>) -> Option<Proof> {
+fn check(contacts: &[Contact], forces: &Forces, correction: &Correction) -> Option<Proof> {
     let total: f64 = forces[..contacts.len()].iter().map(|force| force.normal).sum();
     if !(total > 0.0 && total.is_finite()) {
         return None;
@@ -118,11 +141,9 @@ fn check(contacts: &[Contact], forces: &Forces, factor: &Cholesky<f64, nalgebra:
         proof.slack = proof.slack.min(force.slack());
         residual += contact.wrench(force);
     }
-    // 1/‖(G Gᵀ)⁻¹‖ ≤ λ_min(G Gᵀ): the smallest singular value is at least this.
-    let singular = 1.0 / factor.inverse().norm().sqrt();
     // What balances the residual exactly is smaller than residual/singular, and must not leave the cones.
-    let inside = proof.slack >= LEAST_SLACK && residual.norm() <= 0.5 * singular * proof.slack;
-    (inside && singular >= LEAST_SINGULAR).then_some(proof)
+    let inside = proof.slack >= LEAST_SLACK && residual.norm() <= 0.5 * correction.singular * proof.slack;
+    inside.then_some(proof)
 }
 
 /// A certified lower bound of the closure margin Q1 = min over |w| = 1 of max_i h_i(w), from one internal force.

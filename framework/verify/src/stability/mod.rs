@@ -1,14 +1,16 @@
 //! Whether the fingers that hold the object hold it stably, at every sample of the plan.
 
 mod force;
+mod load;
 mod socp;
 
 use crate::contact_checks::Touch;
 use crate::track::{Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use force::{Contact, LEAST_SLACK, Proof};
-use regrasp_api::{MAX_FINGERS, Vec3};
-use regrasp_plan::{Claims, ConeClaim, Extreme, Place};
+use load::LoadCheck;
+use regrasp_api::{MAX_FINGERS, Rotation, Vec3};
+use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, Place};
 
 /// Grasps not proved stable after which no more are looked at: the plan is refused anyway.
 const MOST_FAILURES: usize = 100;
@@ -31,6 +33,8 @@ pub(crate) struct StabilityCheck {
     failures: usize,
     /// Margins' lower bounds at the plan's states, for refinement at the end.
     margins: Vec<Margin>,
+    /// What must be held where the plan claims equilibrium, not closure.
+    load: Option<LoadCheck>,
 }
 
 /// The certified margin of one grasp.
@@ -41,14 +45,29 @@ struct Margin {
 }
 
 impl StabilityCheck {
-    pub(crate) fn new(claims: &Claims) -> Self {
+    /// For an object of this weight (N, in H).
+    pub(crate) fn new(claims: &Claims, weight_H: Vec3) -> Self {
         let mut gauge = Gauge::new("stability", "force", Side::Above, LEAST_SLACK);
         let valid =
             |cone: &ConeClaim| cone.mu >= 0.0 && cone.gamma >= 0.0 && (cone.mu + cone.gamma).is_finite();
-        let cone = claims.contact.cone.filter(valid);
+        let (known, load) = match &claims.criterion {
+            Criterion::Closure => (true, None),
+            Criterion::Equilibrium(load) => {
+                let check = LoadCheck::new(load, weight_H, claims.margin.length);
+                (check.is_some(), check)
+            }
+            _ => (false, None),
+        };
+        if !known {
+            gauge.note(f64::NAN, || Place {
+                note: Some("the claimed criterion has no meaning".into()),
+                ..Default::default()
+            });
+        }
+        let cone = claims.contact.cone.filter(valid).filter(|_| known);
         if claims.contact.cone.is_none() {
             gauge.remark("not independently checked: the plan claims contacts whose cones are not elliptic");
-        } else if cone.is_none() {
+        } else if cone.is_none() && known {
             gauge.note(f64::NAN, || Place {
                 note: Some("the claimed cone has no meaning".into()),
                 ..Default::default()
@@ -63,15 +82,17 @@ impl StabilityCheck {
             solved: 0.0,
             failures: 0,
             margins: Vec::new(),
+            load,
         }
     }
 
     /// Starts a segment: the contacts change, so no force is carried over.
     pub(crate) fn start(&mut self) {
         self.carried = None;
+        self.load.iter_mut().for_each(LoadCheck::start);
     }
 
-    /// Takes in one sample, with where the fingers touch that hold in this segment.
+    /// Takes in one sample, with the object's orientation and where the fingers touch that hold in this segment.
     ///
     /// `moving` does not hold at all while it is lifted, its contacts at both ends included.
     pub(crate) fn sample(
@@ -79,6 +100,7 @@ impl StabilityCheck {
         leg: &Leg<'_>,
         state: usize,
         sample: usize,
+        R_HO: &Rotation,
         touches: &[Option<Touch>; MAX_FINGERS],
     ) {
         let Some(cone) = self.cone else { return };
@@ -86,6 +108,9 @@ impl StabilityCheck {
             return;
         }
         let contacts = self.contacts(leg, &cone, touches);
+        if self.load.is_some() {
+            return self.sample_load(&contacts, R_HO, || leg.between(state, sample as f64 / SAMPLES as f64));
+        }
         if leg.moving.is_some() && self.margins.last().is_some_and(|last| last.contacts == contacts) {
             return; // The others rest: the grasp is the one just looked at.
         }
@@ -106,6 +131,14 @@ impl StabilityCheck {
                 self.margins.push(Margin { contacts: vec![], lower: 0.0, place: place() });
             }
         }
+    }
+
+    /// Whether the contacts hold the claimed load; closure margins do not apply.
+    fn sample_load(&mut self, contacts: &[Contact], R_HO: &Rotation, place: impl FnOnce() -> Place) {
+        let Some(load) = &mut self.load else { return };
+        let found = load.prove(contacts, R_HO);
+        self.failures += usize::from(found.is_err());
+        self.gauge.note(found.unwrap_or_else(|slack| slack), place);
     }
 
     /// The contacts of the fingers that hold.

@@ -3,6 +3,7 @@
 use super::force::{Contact, Force, Forces};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use nalgebra::Vector6;
 use regrasp_api::{MAX_FINGERS, Vec3, any_orthogonal};
 
 /// Variables of one contact: normal, two tangential, torsional.
@@ -16,16 +17,30 @@ pub(crate) fn best_forces(contacts: &[Contact]) -> Option<(Forces, f64)> {
     let variables = OF_CONTACT * contacts.len() + 1;
     let tangents: Vec<[Vec3; 2]> = contacts.iter().map(tangents).collect();
     let mut problem = Problem::new(variables);
-    problem.balance(contacts, &tangents);
+    problem.balance(contacts, &tangents, &Vector6::zeros());
+    problem.sum_to_one(contacts.len());
     problem.cones(contacts.len());
-    let solution = problem.solve()?;
+    Some(forces_of(&problem.solve()?, &tangents))
+}
+
+/// Maximises the slack t over all forces y with G y = `wanted`, normal ≤ 1 - t and normal - t ≥ |(tangential, torsional)| for each contact.
+pub(crate) fn best_forces_for(contacts: &[Contact], wanted: &Vector6<f64>) -> Option<(Forces, f64)> {
+    let tangents: Vec<[Vec3; 2]> = contacts.iter().map(tangents).collect();
+    let mut problem = Problem::new(OF_CONTACT * contacts.len() + 1);
+    problem.balance(contacts, &tangents, wanted);
+    problem.at_most_one(contacts.len());
+    problem.cones(contacts.len());
+    Some(forces_of(&problem.solve()?, &tangents))
+}
+
+fn forces_of(solution: &[f64], tangents: &[[Vec3; 2]]) -> (Forces, f64) {
     let mut forces = [Force::default(); MAX_FINGERS];
-    for (i, force) in forces.iter_mut().take(contacts.len()).enumerate() {
+    for (i, force) in forces.iter_mut().take(tangents.len()).enumerate() {
         let y = &solution[OF_CONTACT * i..];
         let tangential = tangents[i][0] * y[1] + tangents[i][1] * y[2];
         *force = Force { normal: y[0], tangential, spin: y[3] };
     }
-    Some((forces, solution[variables - 1]))
+    (forces, solution[OF_CONTACT * tangents.len()])
 }
 
 fn tangents(contact: &Contact) -> [Vec3; 2] {
@@ -56,8 +71,8 @@ impl Problem {
         }
     }
 
-    /// Rows 0 to 5: balance of force and torque; row 6: the normal forces sum to 1.
-    fn balance(&mut self, contacts: &[Contact], tangents: &[[Vec3; 2]]) {
+    /// Rows 0 to 5: the forces' wrench is `wanted`.
+    fn balance(&mut self, contacts: &[Contact], tangents: &[[Vec3; 2]], wanted: &Vector6<f64>) {
         for (i, (contact, tangents)) in contacts.iter().zip(tangents).enumerate() {
             let forces = [contact.n, tangents[0] * contact.mu, tangents[1] * contact.mu, Vec3::zeros()];
             for (k, force) in forces.iter().enumerate() {
@@ -70,10 +85,28 @@ impl Problem {
                     self.set(3 + axis, OF_CONTACT * i + k, torque[axis]);
                 }
             }
-            self.set(6, OF_CONTACT * i, 1.0);
         }
-        self.b.extend([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
-        self.cones.push(SupportedConeT::ZeroConeT(7));
+        self.b.extend(wanted.iter());
+        self.cones.push(SupportedConeT::ZeroConeT(6));
+    }
+
+    /// The normal forces sum to 1.
+    fn sum_to_one(&mut self, count: usize) {
+        let row = self.b.len();
+        (0..count).for_each(|i| self.set(row, OF_CONTACT * i, 1.0));
+        self.b.push(1.0);
+        self.cones.push(SupportedConeT::ZeroConeT(1));
+    }
+
+    /// normal + t ≤ 1 for each contact.
+    fn at_most_one(&mut self, count: usize) {
+        let (row, t) = (self.b.len(), self.variables - 1);
+        for i in 0..count {
+            self.set(row + i, OF_CONTACT * i, 1.0);
+            self.set(row + i, t, 1.0);
+            self.b.push(1.0);
+        }
+        self.cones.push(SupportedConeT::NonnegativeConeT(count));
     }
 
     /// For each contact: (normal - t, tangential, torsional) in the second-order cone.
