@@ -1,6 +1,6 @@
 //! `graph-strategy/bidirectional`: two trees that grow towards each other.
 //!
-//! The component of the start and those of the goals are two trees. The smaller one grows: one of its nodes is extended by a sample
+//! The component of the start and those of the goals are two trees. They grow in turn: a node of the tree is extended by a sample
 //! near it, with probability `greed` the node nearest to a random node of the other tree, otherwise a random one. The new node is
 //! then tried with the nearest node of each tree that it does not belong to, first inside GS_n, then by transfer and regrasps; a new
 //! node that no path in GS_n joins to the tree it grew from may so enter the trees all the same. With probability `anywhere` a
@@ -9,8 +9,9 @@
 //! It pays where the motion from start to goal is a narrow passage that samples anywhere miss; in an open workspace its short
 //! extensions make more nodes than samples anywhere do.
 //!
-//! Source: J. Kuffner, S. LaValle, "RRT-Connect: an efficient approach to single-query path planning", ICRA 2000, with the trees
-//! balanced as in S. LaValle, "Planning Algorithms", 2006, section 5.5.3. Departures: a strategy sees distances between nodes only, so that
+//! Source: J. Kuffner, S. LaValle, "RRT-Connect: an efficient approach to single-query path planning", ICRA 2000;
+//! S. LaValle, "Planning Algorithms", 2006, section 5.5.3. Departures: trees grow in turn by the count of samples, not the
+//! smaller one first, since a tree whose extensions fail to join it would stay the smaller one for ever; a strategy sees distances between nodes only, so that
 //! the other tree's nodes take the place of random configurations, and the manifold's samples near a node that of steps towards them.
 
 use crate::nearest::{ends, nearest_in, nodes};
@@ -57,15 +58,14 @@ impl Bidirectional {
         Ok(Self { settings })
     }
 
-    /// The node of the smaller tree to extend.
+    /// The node to extend, of the tree whose turn it is.
     fn node_to_extend(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> NodeId {
-        let of_start: Vec<NodeId> = members(graph, Tree::Start);
-        let of_goals: Vec<NodeId> = members(graph, Tree::Goals);
-        let (tree, own, others) = if of_start.len() <= of_goals.len() {
-            (Tree::Start, of_start, of_goals)
+        let (tree, other) = if graph.generated().0 % 2 == 0 {
+            (Tree::Start, Tree::Goals)
         } else {
-            (Tree::Goals, of_goals, of_start)
+            (Tree::Goals, Tree::Start)
         };
+        let (own, others) = (members(graph, tree), members(graph, other));
         let random = own[context.random.index(own.len())];
         if context.random.unit() >= self.settings.greed {
             return random;

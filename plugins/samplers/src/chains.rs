@@ -1,6 +1,6 @@
 //! What all samplers share: a hand at rest, and the closure of given contacts.
 
-use regrasp_api::{Configuration, Contact, Context, PerFinger, Pose, Reason, Slot, Task};
+use regrasp_api::{Configuration, Contact, Context, FingerIndex, PerFinger, Pose, Reason, Slot, Task};
 
 /// Every finger at rest, none in contact.
 pub(crate) fn at_rest(task: &Task<'_>, X_HO: Pose) -> Configuration {
@@ -31,4 +31,11 @@ pub(crate) fn close(
         q.joints[finger] = joints;
     }
     Some(q)
+}
+
+/// Whether an object of this radius (m, about its origin) at the pose comes near the finger: a look that saves tries where none helps.
+pub(crate) fn may_reach(task: &Task<'_>, X_HO: &Pose, finger: FingerIndex, radius: f64) -> bool {
+    let model = task.hand.finger(finger);
+    let most = model.reach + radius + task.hand.fingertip_radius();
+    (X_HO.translation.vector - model.p_HReach).norm_squared() <= most * most
 }

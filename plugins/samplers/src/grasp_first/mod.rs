@@ -127,11 +127,12 @@ impl ClosedChainSampler for GraspFirst {
         context: &mut Context<'_>,
     ) -> Result<Option<Configuration>, CallError> {
         context.count_call(Slot::Sampler);
+        let radius = task.object.mesh.radius();
         let poses = if matches!(pose, PoseRequest::At(_)) { 1 } else { self.settings.poses };
         for _ in 0..self.settings.grasps {
             context.proceed()?;
             let mut X_HO = self.draw_pose(task, pose, context);
-            if !within_reach(task, &X_HO, holding) {
+            if !holding.iter().all(|finger| chains::may_reach(task, &X_HO, finger, radius)) {
                 context.reject(Slot::Sampler, Reason::Reach);
                 continue;
             }
@@ -165,15 +166,6 @@ impl ClosedChainSampler for GraspFirst {
     ) -> Result<Option<Configuration>, CallError> {
         Ok(chains::close(task, X_HO, contacts, near, context))
     }
-}
-
-/// Whether the object at the pose comes near every finger that is to hold it: a look that saves grasps where no grasp helps.
-fn within_reach(task: &Task<'_>, X_HO: &Pose, holding: FingerSet) -> bool {
-    let size = task.object.mesh.radius() + task.hand.fingertip_radius();
-    holding.iter().all(|finger| {
-        let model = task.hand.finger(finger);
-        (X_HO.translation.vector - model.p_HReach).norm() <= model.reach + size
-    })
 }
 
 inventory::submit! {

@@ -81,20 +81,20 @@ impl ProjectionSampler {
     /// One random start, projected and repaired.
     fn try_start(
         &self,
-        task: &Task<'_>,
+        newton: &Newton<'_>,
         request: PoseRequest<'_>,
         holding: FingerSet,
         context: &mut Context<'_>,
     ) -> Result<Result<Configuration, Reason>, CallError> {
-        let ProjectionSettings { anywhere, spread_deg, steps, .. } = self.settings;
+        let task = newton.task;
+        let ProjectionSettings { anywhere, spread_deg, .. } = self.settings;
         let law = PoseLaw { anywhere, spread: spread_deg.to_radians() };
         let mut q = chains::at_rest(task, pose::draw(task, request, &law, &mut context.random));
         for finger in holding.iter() {
             q.joints[finger] = self.draw(task, request, finger, &mut context.random);
         }
-        let region = Region::of(task, &request);
-        if region != Region::Point {
-            Newton { task, steps, region }.close(&mut q, Unknowns::PoseAndJoints(holding));
+        if newton.region != Region::Point {
+            newton.close(&mut q, Unknowns::PoseAndJoints(holding));
         }
         if task.clearance.object_free(&q.X_HO).is_err() {
             return Ok(Err(Reason::Collision));
@@ -102,7 +102,7 @@ impl ProjectionSampler {
         let mut placed = FingerSet::EMPTY;
         for finger in q.joints.fingers() {
             let refused = if holding.contains(finger) {
-                self.place(task, request, (&mut q, finger, placed), context)?
+                self.place(newton, request, (&mut q, finger, placed), context)?
             } else {
                 task.admissible.admit_finger(task, &q, finger, placed, context)?
             };
@@ -117,12 +117,15 @@ impl ProjectionSampler {
     /// Lets `finger` touch the resting object beside the fingers in `placed`: from its joints as they are, then from others.
     fn place(
         &self,
-        task: &Task<'_>,
+        newton: &Newton<'_>,
         request: PoseRequest<'_>,
         (q, finger, placed): (&mut Configuration, FingerIndex, FingerSet),
         context: &mut Context<'_>,
     ) -> Result<Option<Reason>, CallError> {
-        let newton = Newton { task, steps: self.settings.steps, region: Region::Point };
+        let task = newton.task;
+        if !chains::may_reach(task, &q.X_HO, finger, newton.turn_length) {
+            return Ok(Some(Reason::Reach));
+        }
         let mut last = Reason::Closure;
         for draw in 0..self.settings.draws {
             if draw > 0 {
@@ -180,9 +183,11 @@ impl ClosedChainSampler for ProjectionSampler {
         context: &mut Context<'_>,
     ) -> Result<Option<Configuration>, CallError> {
         context.count_call(Slot::Sampler);
+        let (steps, turn_length) = (self.settings.steps, task.object.mesh.radius());
+        let newton = Newton { task, steps, region: Region::of(task, &pose), turn_length };
         for _ in 0..self.settings.starts {
             context.proceed()?;
-            match self.try_start(task, pose, holding, context)? {
+            match self.try_start(&newton, pose, holding, context)? {
                 Ok(q) => return Ok(Some(q)),
                 Err(reason) => context.reject(Slot::Sampler, reason),
             };

@@ -51,6 +51,8 @@ pub(super) struct Newton<'a> {
     pub steps: usize,
     /// Where the object may be.
     pub region: Region,
+    /// What a turn by one radian counts (m): the object's radius.
+    pub turn_length: f64,
 }
 
 impl Newton<'_> {
@@ -96,14 +98,13 @@ impl Newton<'_> {
     fn linearise(&self, q: &Configuration, unknowns: Unknowns) -> Linearised {
         let mut all =
             Linearised { residual: SVector::zeros(), by_pose: SMatrix::zeros(), by_joints: SMatrix::zeros() };
-        let length = self.turn_length();
         for finger in unknowns.fingers().iter() {
             let tip = self.task.hand.tip_kinematics(finger, &q.joints[finger]);
             let nearest = self.projection(q, finger, &tip.p_HF);
             let (row, n_H) = (finger.index(), q.X_HO.rotation * nearest.contact.n_O);
             all.residual[row] = nearest.distance - self.task.hand.fingertip_radius();
             if matches!(unknowns, Unknowns::PoseAndJoints(_)) {
-                let turn = (tip.p_HF - q.X_HO.translation.vector).cross(&n_H) / length;
+                let turn = (tip.p_HF - q.X_HO.translation.vector).cross(&n_H) / self.turn_length;
                 let by_pose = Vector6::new(n_H.x, n_H.y, n_H.z, turn.x, turn.y, turn.z);
                 all.by_pose.set_row(row, &-by_pose.transpose());
             }
@@ -147,16 +148,129 @@ impl Newton<'_> {
 
     fn moved(&self, X_HO: &Pose, step: &Vector6<f64>) -> Pose {
         let p = X_HO.translation.vector + step.fixed_rows::<3>(0);
-        let turn = step.fixed_rows::<3>(3) / self.turn_length();
+        let turn = step.fixed_rows::<3>(3) / self.turn_length;
         Pose::from_parts(p.into(), Rotation::from_scaled_axis(turn) * X_HO.rotation)
     }
 
-    /// What a turn by one radian counts (m).
-    fn turn_length(&self) -> f64 {
-        self.task.object.mesh.radius()
+    fn joint_length(&self, kind: JointKind) -> f64 {
+        if kind == JointKind::Prismatic { 1.0 } else { self.turn_length }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use regrasp_api::Random;
+    use regrasp_conformance::fixtures::Bench;
+
+    fn newton<'a>(task: &'a Task<'a>, region: Region) -> Newton<'a> {
+        Newton { task, steps: 30, region, turn_length: task.object.mesh.radius() }
     }
 
-    fn joint_length(&self, kind: JointKind) -> f64 {
-        if kind == JointKind::Prismatic { 1.0 } else { self.turn_length() }
+    /// Fingers spread over their ranges, far from the object's edges and corners or not.
+    fn start(task: &Task<'_>, random: &mut Random) -> Configuration {
+        let X_HO = Pose::from_parts(Vec3::new(0.0, 0.0, 0.085).into(), random.rotation());
+        let mut q = crate::chains::at_rest(task, X_HO);
+        for finger in q.joints.fingers() {
+            for (i, joint) in task.hand.finger(finger).joints.iter().enumerate() {
+                let (middle, half) = (0.5 * (joint.lower + joint.upper), 0.3 * (joint.upper - joint.lower));
+                q.joints[finger][i] = middle + half * random.range(-1.0, 1.0);
+            }
+        }
+        q
+    }
+
+    #[test]
+    fn derivatives_are_those_of_differences() {
+        let step = 1e-6;
+        for bench in [Bench::free_cube(), Bench::hand_ellipsoid()] {
+            let task = bench.task();
+            let newton = newton(&task, Region::Box(Vec3::repeat(-1.0), Vec3::repeat(1.0)));
+            let (mut random, all) = (Random::from_key(1, 0, 0, 0), FingerSet::first(4));
+            let mut compared = 0;
+            for _ in 0..20 {
+                let q = start(&task, &mut random);
+                let at = newton.linearise(&q, Unknowns::PoseAndJoints(all));
+                let residual = |q: &Configuration| newton.linearise(q, Unknowns::PoseAndJoints(all)).residual;
+                for k in 0..6 {
+                    let mut unit = Vector6::zeros();
+                    unit[k] = step;
+                    let moved = |sign: f64| Configuration {
+                        X_HO: newton.moved(&q.X_HO, &(unit * sign)),
+                        ..q.clone()
+                    };
+                    let slope = (residual(&moved(1.0)) - residual(&moved(-1.0))) / (2.0 * step);
+                    let off = (slope - at.by_pose.column(k)).amax();
+                    // Where the closest point changes from facet to facet within the step the slope is neither's.
+                    compared += usize::from(off < 1e-3);
+                }
+                let (finger, kind) = (FingerIndex(2), task.hand.finger(FingerIndex(2)).joints[1].kind);
+                let moved = |sign: f64| {
+                    let mut moved = q.clone();
+                    moved.joints[finger][1] += sign * step / newton.joint_length(kind);
+                    residual(&moved)[2]
+                };
+                let slope = (moved(1.0) - moved(-1.0)) / (2.0 * step);
+                compared += usize::from((slope - at.by_joints[(2, 1)]).abs() < 1e-3);
+            }
+            assert!(compared >= 138, "{compared} of 140 derivatives agree");
+        }
+    }
+
+    #[test]
+    fn free_fingertips_come_straight_to_a_ball() {
+        // A slide has no curvature and the offset of a ball is a ball: one finger needs few steps, along the line to the centre.
+        let bench = Bench::free_sphere();
+        let task = bench.task();
+        let newton = newton(&task, Region::Point);
+        let mut random = Random::from_key(2, 0, 0, 0);
+        let mut touched = 0;
+        for _ in 0..50 {
+            let mut q = start(&task, &mut random);
+            let before = task.hand.tip_center(FingerIndex(0), &q.joints[FingerIndex(0)]);
+            let X_HO = q.X_HO;
+            let Ok(contact) = newton.touch(&mut q, FingerIndex(0)) else { continue };
+            touched += 1;
+            assert_eq!(q.X_HO, X_HO, "the object rests");
+            let after = task.hand.tip_center(FingerIndex(0), &q.joints[FingerIndex(0)]);
+            let wanted = X_HO * nalgebra::Point3::from(contact.tip_center(bench.radius()));
+            assert!((after - wanted.coords).norm() < 1e-9);
+            // The faceted ball's normals are off the radius by a facet's half angle at most.
+            let (inward, step) = (X_HO.translation.vector - before, after - before);
+            let sin = step.cross(&inward).norm() / (step.norm() * inward.norm());
+            assert!(step.norm() < 1e-6 || sin < 0.2, "{sin}");
+        }
+        assert!(touched > 30, "{touched} of 50");
+    }
+
+    #[test]
+    fn all_fingers_close_together_within_limits_and_region() {
+        let bench = Bench::hand_sphere();
+        let task = bench.task();
+        let center = Pose::translation(0.0, 0.0, 0.085);
+        let region = Region::Ball(center, 0.01, std::f64::consts::PI);
+        let newton = newton(&task, region);
+        let (mut random, mut closed) = (Random::from_key(3, 0, 0, 0), 0);
+        for _ in 0..100 {
+            let mut q = start(&task, &mut random);
+            let before = newton.linearise(&q, Unknowns::PoseAndJoints(FingerSet::first(4))).residual.norm();
+            newton.close(&mut q, Unknowns::PoseAndJoints(FingerSet::first(4)));
+            let after = newton.linearise(&q, Unknowns::PoseAndJoints(FingerSet::first(4))).residual;
+            assert!(after.norm() <= before, "a step was taken that does not pay");
+            closed += usize::from(after.amax() <= CLOSED);
+            assert!((q.X_HO.translation.vector - center.translation.vector).norm() <= 0.01 + 1e-12);
+            assert!(q.joints.iter().all(|(finger, joints)| task.hand.within_limits(finger, joints)));
+        }
+        assert!(closed >= 50, "{closed} of 100 starts close");
+    }
+
+    #[test]
+    fn an_object_out_of_reach_is_not_touched() {
+        let bench = Bench::hand_sphere();
+        let task = bench.task();
+        let newton = newton(&task, Region::Point);
+        let mut q = start(&task, &mut Random::from_key(4, 0, 0, 0));
+        q.X_HO = Pose::translation(0.0, 0.0, 1.0);
+        assert!(matches!(newton.touch(&mut q, FingerIndex(1)), Err(Reason::Limits | Reason::Closure)));
     }
 }
