@@ -53,6 +53,7 @@ struct Liar {
 fn wide(hand: &dyn Hand) -> ChainHand {
     let prismatic = hand.finger(FingerIndex(0)).joints[0].kind == JointKind::Prismatic;
     let mut description = if prismatic { free_fingertips() } else { four_finger() };
+    description.fingertip = hand.fingertip();
     for joint in description.finger.iter_mut().flat_map(|finger| &mut finger.joint) {
         (joint.lower, joint.upper) = (joint.lower - 0.05, joint.upper + 0.05);
     }

@@ -3,8 +3,8 @@
 use super::steps::{close, fault, wrong_target};
 use crate::fixtures::{to_hand, to_object};
 use regrasp_api::{
-    CallError, Configuration, Context, FingerIndex, LocalPlanner, Mat3, Path, Pose, Reached, Reason, Slot,
-    Target, Task, Vec3, angle_between, interpolate,
+    CallError, Configuration, Context, FingerIndex, Fingertip, LocalPlanner, Mat3, Path, Pose, Reached,
+    Reason, Slot, Target, Task, Vec3, angle_between, interpolate,
 };
 
 /// Steps are this part of the task's resolution.
@@ -84,6 +84,10 @@ impl LocalPlanner for FineRolling {
         context: &mut Context<'_>,
     ) -> Result<Reached, CallError> {
         context.count_call(Slot::TransferPlanner);
+        if task.hand.fingertip() != Fingertip::Ball {
+            let reason = "point fingertips do not roll".into();
+            return Err(CallError::Unsupported { plugin: "local-planner/reference".into(), reason });
+        }
         let Target::Transfer(to) = to else { return Err(wrong_target(Slot::TransferPlanner)) };
         if let Some(path) = path.as_deref_mut() {
             path.restart(from);

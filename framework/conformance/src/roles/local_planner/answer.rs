@@ -129,8 +129,9 @@ pub(super) fn wrong_target<K: Kind>(subject: &Subject<'_>) -> Finding {
         if subject.entry.slots.contains(&slot) {
             continue;
         }
-        let case = &cases(slot)[0];
-        let (planner, task) = (build(subject, case)?, case.bench.task());
+        let built = cases(slot).iter().find_map(|case| Some((case, build(subject, case).ok()?)));
+        let Some((case, planner)) = built else { continue };
+        let task = case.bench.task();
         let found = planner.connect(&task, &case.from, &case.goal.target(), None, &mut context(0));
         let refused = matches!(found, Err(CallError::Unsupported { .. }));
         ensure(refused, || format!("a target of `{}` is answered with {found:?}", slot.name()))?;

@@ -83,22 +83,20 @@ fn transfers() -> Vec<Case> {
         let goal = Goal::Transfer(turned(&from.X_HO, shift, turn));
         cases.push(Case { bench, from, goal, easy });
     };
-    for (key, bench) in benches().into_iter().enumerate() {
+    let point = Bench::point_sphere();
+    for (key, bench) in benches().into_iter().chain([point, point]).enumerate() {
         add(bench, somewhere(bench, key as u64), random.direction() * 1e-3, random.direction() * 0.03, true);
     }
-    let (free, hand) = (Bench::free_sphere(), Bench::hand_sphere());
-    add(free, somewhere(free, 11), random.direction() * 5e-3, random.direction() * 0.4, false);
-    add(hand, somewhere(hand, 12), random.direction() * 5e-3, random.direction() * 0.4, false);
+    for (key, bench) in [Bench::free_sphere(), Bench::hand_sphere(), point].into_iter().enumerate() {
+        let from = somewhere(bench, 11 + key as u64);
+        add(bench, from, random.direction() * 5e-3, random.direction() * 0.4, false);
+    }
     // Up until a joint's limit stops it, sideways into a wall, and from a grasp that holds nothing.
-    add(free, ring(free), Vec3::new(0.0, 0.0, 0.09), Vec3::zeros(), false);
-    add(
-        Bench::walled_sphere(),
-        ring(Bench::walled_sphere()),
-        Vec3::new(0.02, 0.0, 0.0),
-        Vec3::zeros(),
-        false,
-    );
-    add(free, slack(free), Vec3::new(0.0, 2e-3, 1e-3), Vec3::zeros(), false);
+    for (open, walled) in [(Bench::free_sphere(), Bench::walled_sphere()), (point, Bench::walled_points())] {
+        add(open, ring(open), Vec3::new(0.0, 0.0, 0.09), Vec3::zeros(), false);
+        add(walled, ring(walled), Vec3::new(0.02, 0.0, 0.0), Vec3::zeros(), false);
+        add(open, slack(open), Vec3::new(0.0, 2e-3, 1e-3), Vec3::zeros(), false);
+    }
     cases
 }
 

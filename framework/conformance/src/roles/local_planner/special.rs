@@ -2,10 +2,11 @@
 
 use super::case::Goal;
 use super::inspect::{Touch, instants};
-use super::{Kind, Regrasp, Transfer, journeys};
+use super::{Journey, Kind, Regrasp, Transfer, journeys};
+use crate::fixtures::to_object;
 use crate::law::Subject;
 use crate::report::{Finding, ensure};
-use regrasp_api::Vec3;
+use regrasp_api::{Fingertip, Hand, Vec3};
 
 pub(super) fn same_fingers<K: Kind>(subject: &Subject<'_>) -> Finding {
     for journey in journeys::<K>(subject)?.iter() {
@@ -16,10 +17,31 @@ pub(super) fn same_fingers<K: Kind>(subject: &Subject<'_>) -> Finding {
     Ok(())
 }
 
+/// A point fingertip keeps its contact, and its ball the place over the object that it had at touch-down.
+fn stays_put(journey: &Journey) -> Finding {
+    let (bench, from) = (journey.case.bench, &journey.case.from);
+    for (at, q) in instants(&journey.path) {
+        ensure(q.contacts == from.contacts, || format!("a fingertip's contact changes at {at}"))?;
+        for (finger, contact) in from.contacts.iter() {
+            let Some(contact) = contact else { continue };
+            let p_OF = to_object(&q.X_HO, &bench.world.hand.tip_center(finger, &q.joints[finger]));
+            let off = (p_OF - contact.tip_center(bench.radius())).norm();
+            ensure(off <= 0.5 * bench.tolerances.slip * 1.05, || {
+                format!("fingertip {} is {off:e} m off its place at {at}", finger.0)
+            })?;
+        }
+    }
+    Ok(())
+}
+
 /// Slip adds up, as vectors in the object's frame, from the start to any instant.
 pub(super) fn no_slip(subject: &Subject<'_>) -> Finding {
     for journey in journeys::<Transfer>(subject)?.iter() {
         let bench = journey.case.bench;
+        if bench.world.hand.fingertip() == Fingertip::Point {
+            stays_put(journey)?;
+            continue;
+        }
         for finger in journey.case.from.holding().iter() {
             let (mut before, mut net): (Option<Touch>, Vec3) = (None, Vec3::zeros());
             for (at, q) in instants(&journey.path) {
