@@ -159,6 +159,16 @@ impl Polyhedron {
         self.half_edges[previous(half_edge) as usize].vertex
     }
 
+    /// Whether a point lies in a facet, to rounding.
+    pub fn holds(&self, facet: u32, p_OP: &Vec3) -> bool {
+        let Some(edges) = self.half_edges.get(3 * facet as usize..3 * facet as usize + 3) else {
+            return false;
+        };
+        let n = self.mesh.normal(facet);
+        let near = |edge: &HalfEdge| n.cross(&edge.along_O).dot(&(p_OP - edge.p_OE)) > -self.snap;
+        n.dot(&(p_OP - edges[0].p_OE)).abs() < self.snap && edges.iter().all(near)
+    }
+
     /// Where the point of a facet lies: inside, on an edge or at a vertex.
     pub fn place(&self, facet: u32, p_OP: &Vec3) -> Place {
         let edges = [3 * facet, 3 * facet + 1, 3 * facet + 2];

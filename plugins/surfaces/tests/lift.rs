@@ -79,6 +79,38 @@ fn convex_solids_are_followed_exactly() {
     }
 }
 
+/// Planning stops anywhere on a path and goes on from there.
+#[test]
+fn every_place_of_a_path_holds_its_facet_and_starts_a_path() {
+    for mesh in
+        [meshes::cuboid(Vec3::repeat(0.0225)), meshes::sphere(0.03, 1), meshes::torus(0.04, 0.015, 16, 8)]
+    {
+        let surface = surface(&mesh);
+        let mut random = Random::from_key(14, 0, 0, 0);
+        for _ in 0..40 {
+            let (from, to) = (surface.sample(&mut random), surface.sample(&mut random));
+            let path = lifted(&surface, &from, &to).unwrap();
+            let s = random.unit();
+            let via = path.at(s);
+            if mesh.is_locally_convex() {
+                assert!(reference::facets_with(&mesh, &via.p_OC).contains(&via.facet), "{via:?}");
+            }
+            let rest = lifted(&surface, &via, &to).unwrap();
+            let begun = lifted(&surface, &from, &via).unwrap();
+            assert!(path.length <= (rest.length + begun.length) * (1.0 + 2.1e-4));
+            if mesh.is_locally_convex() {
+                let sum = begun.length + rest.length;
+                assert!((sum - path.length).abs() < 5e-4 * path.length, "{sum} {}", path.length);
+                let lift = begun.lift_length() + rest.lift_length();
+                assert!(lift < path.lift_length() * 1.001 + 1e-9, "{lift} {}", path.lift_length());
+            }
+            // A wrong facet does not lead astray.
+            let lost = Contact { facet: random.index(mesh.facets().len()) as u32, ..from };
+            assert!((lifted(&surface, &lost, &to).unwrap().length - path.length).abs() < 3e-4 * path.length);
+        }
+    }
+}
+
 #[test]
 fn hollows_are_followed_without_penetration() {
     let mut share = Vec::new();

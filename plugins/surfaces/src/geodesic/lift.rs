@@ -17,13 +17,16 @@ pub(super) fn angle(a: &Vec3, b: &Vec3) -> f64 {
 pub(super) fn lift(
     polyhedron: &Polyhedron,
     radius: f64,
-    from: &Contact,
-    to: &Contact,
+    (from, start): (&Contact, Place),
+    (to, end): (&Contact, Place),
     legs: &[Leg],
     path: &mut SurfacePath,
 ) {
     path.restart(*from);
-    if stays_on_edge(polyhedron, from, to) {
+    if from == to {
+        return;
+    }
+    if stays_on_edge(polyhedron, start, end) {
         let turned = radius * angle(&from.n_O, &to.n_O);
         path.push(*to, (to.p_OC - from.p_OC).norm().hypot(turned));
         return;
@@ -36,27 +39,26 @@ pub(super) fn lift(
     }
     advance(path, *to, radius);
     // The end is exactly the contact that was asked for, also where it adds no length.
-    if let Some(last) = path.waypoints.last_mut() {
-        last.contact = *to;
+    match path.waypoints.len() {
+        1 => path.push(*to, 0.0),
+        count => path.waypoints[count - 1].contact = *to,
     }
-    path.waypoints[0].contact = *from;
 }
 
 /// Whether both contacts lie on one edge or at one vertex: the ball slides along it while it turns between its facets.
-fn stays_on_edge(polyhedron: &Polyhedron, from: &Contact, to: &Contact) -> bool {
-    let place = |contact: &Contact| polyhedron.place(contact.facet, &contact.p_OC);
-    match (place(from), place(to)) {
+fn stays_on_edge(polyhedron: &Polyhedron, start: Place, end: Place) -> bool {
+    match (start, end) {
         (Place::Vertex(a), Place::Vertex(b)) => a == b,
         (Place::Edge(a), Place::Edge(b)) => a == b || polyhedron.half_edges[a as usize].twin == b,
-        _ => from == to,
+        _ => false,
     }
 }
 
-/// Appends a contact that differs from the last in its point or in its normal.
+/// Appends a contact that differs from the last in its point, its normal or its facet.
 fn advance(path: &mut SurfacePath, contact: Contact, radius: f64) {
     let last = path.waypoints[path.waypoints.len() - 1].contact;
     let travelled = (contact.p_OC - last.p_OC).norm() + radius * angle(&last.n_O, &contact.n_O);
-    if travelled > NEGLIGIBLE {
+    if travelled > NEGLIGIBLE || contact.facet != last.facet {
         path.push(contact, travelled);
     }
 }

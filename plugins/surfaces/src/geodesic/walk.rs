@@ -18,13 +18,19 @@ struct Heading {
 
 /// The contact reached by a straightest geodesic: straight in every facet, unfolded across edges; at a vertex with equal
 /// angles on both sides (Polthier & Schmies, "Straightest geodesics on polyhedral surfaces", 1998).
-pub(super) fn walk(polyhedron: &Polyhedron, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
+pub(super) fn walk(
+    polyhedron: &Polyhedron,
+    from: &Contact,
+    place: Place,
+    direction_O: &Vec3,
+    distance: f64,
+) -> Contact {
     let tangent = direction_O - from.n_O * from.n_O.dot(direction_O);
     let mut left = distance;
     if left.is_nan() || left <= 0.0 || tangent.norm() <= 1e-12 * direction_O.norm() || tangent.norm() == 0.0 {
         return *from;
     }
-    let mut at = head_out(polyhedron, from, &tangent);
+    let mut at = head_out(polyhedron, from, place, &tangent);
     for _ in 0..MOST_FACETS {
         let (edge, run) = way_out(polyhedron, &at);
         if run >= left {
@@ -39,8 +45,7 @@ pub(super) fn walk(polyhedron: &Polyhedron, from: &Contact, direction_O: &Vec3, 
 }
 
 /// Chooses the facet into which a tangent direction leads.
-fn head_out(polyhedron: &Polyhedron, from: &Contact, tangent: &Vec3) -> Heading {
-    let place = polyhedron.place(from.facet, &from.p_OC);
+fn head_out(polyhedron: &Polyhedron, from: &Contact, place: Place, tangent: &Vec3) -> Heading {
     let mut best = (f64::INFINITY, Heading { facet: from.facet, p_OP: from.p_OC, along_O: *tangent });
     polyhedron.facets_at(place, |facet| {
         let n = polyhedron.mesh.normal(facet);
