@@ -4,7 +4,7 @@
 mod support;
 
 use regrasp_api::*;
-use regrasp_local_planners::{Rrt, RrtSettings};
+use regrasp_local_planners::{LiftSlideTouch, LiftSlideTouchSettings, Rrt, RrtSettings};
 use support::{check, context, geometry};
 
 const FINGER: FingerIndex = FingerIndex(1);
@@ -215,4 +215,71 @@ fn other_targets_and_bad_settings_are_refused() {
     assert!(matches!(answer, Err(CallError::Unsupported { .. })), "{answer:?}");
     let settings = RrtSettings { extend: f64::NAN, ..RrtSettings::default() };
     assert!(Rrt::new(settings, &*bench.hand).unwrap_err().to_string().contains("extend"));
+}
+
+/// The direct way alone, with so many heights.
+fn direct(bench: &support::Bench, heights: usize) -> LiftSlideTouch {
+    LiftSlideTouch::new(LiftSlideTouchSettings { heights }, &*bench.hand).unwrap()
+}
+
+#[test]
+fn without_trees_the_direct_way_is_that_of_rrt_and_what_is_barred_stays_barred() {
+    let mut flown = 0;
+    for object in [support::sphere(), support::cube(), support::ring()] {
+        let bench = support::Bench::new(support::four_finger(), object);
+        let mut random = Random::from_key(9, 9, 9, 9);
+        let trees = |nodes| Rrt::new(RrtSettings { nodes, ..Default::default() }, &*bench.hand).unwrap();
+        for _ in 0..15 {
+            let from = support::grasp(&bench, &mut random);
+            let Some((contact, joints)) = elsewhere(&bench, &from, &mut random) else { continue };
+            let target = Target::Regrasp { finger: FINGER, contact: Some(&contact), joints: &joints };
+            let connect = |planner: &dyn LocalPlanner| {
+                let (mut path, mut context) = (Path::default(), context(1));
+                let reached =
+                    planner.connect(&bench.task(), &from, &target, Some(&mut path), &mut context).unwrap();
+                (reached, path, context.tally)
+            };
+            let (reached, path, tally) = connect(&direct(&bench, 2));
+            assert_eq!((reached.clone(), path.clone(), tally.clone()), connect(&trees(0)));
+            assert_eq!(tally.calls(Slot::RegraspPlanner), 1);
+            if reached.is_complete() {
+                flown += 1;
+                assert_flies(&bench, &from, &path, &reached.end);
+                assert_eq!(path, connect(&trees(60)).1, "trees come after the direct way");
+            } else {
+                assert_eq!(tally.rejections(Slot::RegraspPlanner, reached.stop.unwrap()), 1);
+            }
+        }
+    }
+    assert!(flown > 5, "{flown}");
+}
+
+#[test]
+fn more_heights_lift_a_finger_that_the_full_height_bars() {
+    // A shelf above the fingertip, 6 mm over the ball that stands on the object: 8 mm are barred, 3 mm and what lies between are not.
+    let at = |shelf: f64| ObstacleDescription {
+        name: "shelf".into(),
+        shape: Shape::HalfSpace { normal: [0.0, -1.0, 0.0], offset: -shelf },
+        pose: PoseDescription::default(),
+    };
+    let axes = [Vec3::x(), Vec3::y(), -Vec3::x(), -Vec3::y()];
+    let tip = 0.03 + 2.0 * 0.01;
+    let mut bench = support::Bench::among(support::free_tips(), support::sphere(), &[at(tip + 0.0062)]);
+    bench.stability = Box::new(support::Glue);
+    let from = support::touching_along(&bench, &Pose::identity(), &axes);
+    let moved = bench.surface.walk(&from.contacts[FINGER].unwrap(), &Vec3::z(), 0.004);
+    let p_HF = moved.tip_center(bench.radius());
+    let joints = bench.hand.inverse(FINGER, &p_HF, &from.joints[FINGER]).unwrap();
+    let target = Target::Regrasp { finger: FINGER, contact: Some(&moved), joints: &joints };
+    let highest = |heights| {
+        let mut path = Path::default();
+        let reached =
+            direct(&bench, heights).connect(&bench.task(), &from, &target, Some(&mut path), &mut context(1));
+        let gaps = check::gaps(&bench, &path, FINGER);
+        (reached.unwrap().stop, gaps.into_iter().fold(0.0, f64::max))
+    };
+    assert_eq!(highest(1).0, Some(Reason::Retreat));
+    let (two, six) = (highest(2), highest(6));
+    assert_eq!((two.0, six.0), (None, None));
+    assert!((2.9e-3..3.2e-3).contains(&two.1) && (4.9e-3..6.2e-3).contains(&six.1), "{two:?} {six:?}");
 }

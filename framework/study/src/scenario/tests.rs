@@ -1,5 +1,6 @@
 use super::*;
 use regrasp_contact_models as _;
+use regrasp_local_planners as _;
 use std::fs;
 
 fn registry() -> Registry {
