@@ -37,7 +37,7 @@ pub struct PlanArgs {
     /// A scenario file, or the name of a built-in scenario.
     pub scenario: String,
     /// Seed of all random choices: the same seed gives the same plan, on any number of threads.
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = whole_number)]
     pub seed: u64,
     /// Fill a slot with another plugin; can be repeated.
     #[arg(long = "use", value_name = "SLOT=ID")]
@@ -147,6 +147,10 @@ pub enum Kind {
     Scenario,
     /// Hand files.
     Hand,
+}
+
+fn whole_number(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("it must be a whole number in 0..={}", u64::MAX))
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

@@ -114,7 +114,8 @@ impl Summary<'_> {
         let Some(certificate) = &plan.certificate else { return text };
         let mut figure = |name: &str, extreme: &Option<Extreme>, scale: f64, unit: &str| {
             if let Some(extreme) = extreme {
-                let (value, place) = (extreme.value * scale, place_text(&extreme.place));
+                let (value, place) =
+                    (extreme.value * scale, place_text(&extreme.place, &self.scenario.problem));
                 text += &format!("  {name:<13} {value:.3}{unit} ({place})\n");
             }
         };
@@ -135,8 +136,12 @@ impl Summary<'_> {
 
     /// Why a plan was rejected: the checks that it does not meet.
     pub fn why_not_verified(&self) -> String {
-        let table =
-            self.run.verdict.as_ref().map(|verdict| check_table(verdict.failures())).unwrap_or_default();
+        let table = self
+            .run
+            .verdict
+            .as_ref()
+            .map(|verdict| check_table(verdict.failures(), &self.scenario.problem))
+            .unwrap_or_default();
         let kept = match self.saved {
             Some(path) => format!("it was kept as `{}`", path.display()),
             None => "it was not written".into(),
@@ -188,9 +193,18 @@ impl Summary<'_> {
             (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), _) => {
                 format!("change {place}, or raise the friction")
             }
-            _ => "raise `--max-nodes` or the time limit, try another `--seed`, or add a goal half way".into(),
+            _ => format!("{}, try another `--seed`, or add a goal half way", self.more_budget()),
         };
         format!("{warned}  to try  {advice}\n")
+    }
+
+    /// How to raise the budget that ended the run.
+    fn more_budget(&self) -> &'static str {
+        match self.run.stopped_by {
+            Some(StoppedBy::MaxNodes) => "raise `--max-nodes`",
+            Some(StoppedBy::TimeLimit) => "raise `--time-limit`",
+            _ => "give it more time",
+        }
     }
 }
 

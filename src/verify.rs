@@ -3,7 +3,7 @@
 use crate::args::VerifyArgs;
 use crate::table::Table;
 use crate::{Failure, say, say_json};
-use regrasp::api::Body;
+use regrasp::api::Problem;
 use regrasp::plan::Place;
 use regrasp::verify::Check;
 use serde_json::json;
@@ -15,7 +15,11 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         say_json(&json!(verdict))?;
     } else {
         let word = if verdict.valid { "valid" } else { "not valid" };
-        say(&format!("{}: {word}\n{}", args.plan.display(), check_table(verdict.checks.iter())))?;
+        say(&format!(
+            "{}: {word}\n{}",
+            args.plan.display(),
+            check_table(verdict.checks.iter(), &plan.scenario.problem)
+        ))?;
     }
     if verdict.valid {
         return Ok(());
@@ -25,12 +29,12 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
 }
 
 /// Checks as a table, one a line.
-pub fn check_table<'a>(checks: impl Iterator<Item = &'a Check>) -> String {
+pub fn check_table<'a>(checks: impl Iterator<Item = &'a Check>, problem: &Problem) -> String {
     let mut table = Table::new("<<>><", &["check", "", "worst", "limit", "unit", "where"]);
     for check in checks {
         let verdict = if check.ok { "ok" } else { "FAILED" };
         let worst = check.worst.map_or("-".to_owned(), number);
-        let place = place_text(&check.place);
+        let place = place_text(&check.place, problem);
         table.row([check.name, verdict, &worst, &number(check.limit), check.unit, &place].map(str::to_owned));
     }
     table.text()
@@ -41,30 +45,25 @@ fn number(x: f64) -> String {
     if x == 0.0 || (1e-3..1e5).contains(&size) { format!("{x:.4}") } else { format!("{x:.2e}") }
 }
 
-/// A place in a plan in words.
-pub fn place_text(place: &Place) -> String {
+/// A place in a plan in words, fingers and obstacles by the names that the problem gives them.
+pub fn place_text(place: &Place, problem: &Problem) -> String {
     let part = |name: &str, index: Option<usize>| index.map(|index| format!("{name} {index}"));
     let parts = [
         part("goal", place.goal),
         part("segment", place.segment),
         part("state", place.state),
         place.time.map(|time| format!("{time:.2} s")),
-        part("finger", place.finger),
+        place.finger.map(|finger| finger_name(finger, problem)),
         part("joint", place.joint),
-        place.pair.map(|(a, b)| format!("{} and {}", body(a), body(b))),
+        place.pair.map(|(a, b)| format!("{} and {}", problem.name_of(a), problem.name_of(b))),
         place.note.clone(),
     ];
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-fn body(body: Body) -> String {
-    match body {
-        Body::Palm => "palm".into(),
-        Body::Object => "object".into(),
-        Body::Obstacle(index) => format!("obstacle {index}"),
-        Body::Link(finger, link) => format!("link {link} of finger {}", finger.0),
-        Body::Fingertip(finger) => format!("tip of finger {}", finger.0),
-    }
+fn finger_name(finger: usize, problem: &Problem) -> String {
+    let named = problem.hand.finger.get(finger).map(|finger| format!("finger `{}`", finger.name));
+    named.unwrap_or_else(|| format!("finger {finger}"))
 }
 
 #[cfg(test)]
@@ -81,8 +80,10 @@ mod tests {
 
     #[test]
     fn places_name_only_what_applies() {
+        let registry = regrasp::host::Registry::linked().expect("the built-in plugins differ");
+        let scenario = regrasp::study::scenario::load("sphere", &registry).expect("it is built in");
         let place = Place { segment: Some(2), finger: Some(1), ..Place::default() };
-        assert_eq!(place_text(&place), "segment 2, finger 1");
-        assert_eq!(place_text(&Place::default()), "");
+        assert_eq!(place_text(&place, &scenario.problem), "segment 2, finger `north`");
+        assert_eq!(place_text(&Place::default(), &scenario.problem), "");
     }
 }

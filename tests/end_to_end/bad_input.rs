@@ -62,6 +62,7 @@ fn numbers_out_of_range_nan_and_infinite() {
         "--max-nodes 0",
         "--threads 0",
         "--seed -1",
+        "--seed 18446744073709551616",
     ] {
         desk.run(&format!("plan sphere {option}")).assert_fails(2, &["error: "]);
     }
@@ -134,6 +135,13 @@ fn starts_that_cannot_be() {
         start(&format!("pose = {{ position = [0.0, 0.0, 0.085] }}\ngrasp = [{}]", fingers.join(", ")))
     };
     let round = ["0.03, 0, 0", "0, 0.03, 0", "-0.03, 0, 0", "0, -0.03, 0"];
+    // The problem names what overlaps, with a grasp or without.
+    refused(
+        &start("pose = { position = [0.0, 0.0, 0.0] }"),
+        &["`start.pose`: the palm and the object overlap", "mine.toml:23"],
+    );
+    let post = "[[obstacle]]\nname = \"post\"\nshape = { kind = \"sphere\", radius = 0.01 }\npose = { position = [0.02, 0.0, 0.085] }\n\n[start]";
+    refused(&sphere("[start]", post), &["`start.pose`", "obstacle `post`", "overlap"]);
     let far = start(
         "pose = { position = [0.0, 0.0, 0.6] }\ngrasp = [{ contact = [0.03, 0, 0] }, { contact = [0, 0.03, 0] }, \
          { contact = [-0.03, 0, 0] }, { contact = [0, -0.03, 0] }]",
@@ -141,9 +149,14 @@ fn starts_that_cannot_be() {
     refused(&far, &["start.grasp[0]", "`east`", "reach"]);
     refused(&grasp(["0.05, 0, 0", round[1], round[2], round[3]]), &["start.grasp[0]", "surface"]);
     let together = ["0.03, 0, 0", "0, 0.03, 0", "0.0001, 0.03, 0", "0, -0.03, 0"];
-    refused(&grasp(together), &["start"]);
-    let low = start("pose = { position = [0.0, 0.0, 0.0] }\ngrasp = [{}, {}, {}, {}]");
-    refused(&low, &["start"]);
+    refused(&grasp(together), &["`start.grasp[2]`", "finger `west`", "reach"]);
+    let beside = ["0.03, 0, 0", "0.029, 0.0076, 0", "-0.03, 0, 0", "0, -0.03, 0"];
+    refused(&grasp(beside), &["`start`", "link 2 of finger `east`", "finger `north`", "overlap"]);
+    let none = start("pose = { position = [0.0, 0.0, 0.085] }\ngrasp = [{}, {}, {}, {}]");
+    refused(&none, &["`start.grasp`", "not stable", "no finger has a `contact`"]);
+    let two = "grasp = [{ contact = [0.03, 0, 0] }, { contact = [0, 0.03, 0] }, {}, {}]";
+    let two = start(&format!("pose = {{ position = [0.0, 0.0, 0.085] }}\n{two}"));
+    refused(&two, &["`start.grasp`", "not stable", "2 contacts (`east`, `north`)"]);
     refused(&start("pose = { position = [0.0, 0.0, 0.085] }\ngrasp = [{}]"), &["start.grasp"]);
 }
 
@@ -185,6 +198,13 @@ fn places_where_no_plan_can_be_written() {
         .assert_fails(2, &["nowhere/plan.json", "folder does not exist"]);
     desk.run("plan sphere -o .").assert_fails(2, &["it is a folder"]);
     assert!(desk.files().is_empty());
+    desk.write("kept.json", KEPT);
+    let path = desk.folder().join("kept.json");
+    let mut rights = std::fs::metadata(&path).expect("it was just written").permissions();
+    rights.set_readonly(true);
+    std::fs::set_permissions(&path, rights).expect("the file is ours");
+    desk.run("plan sphere -o kept.json").assert_fails(2, &["kept.json", "permission denied"]);
+    assert_eq!(desk.read("kept.json"), KEPT);
 }
 
 #[test]
@@ -196,6 +216,8 @@ fn plan_files_that_are_none() {
     desk.run("verify short.json").assert_fails(2, &["short.json", "truncated"]);
     desk.write("later.json", plan.replacen("\"version\": 1", "\"version\": 99", 1));
     desk.run("verify later.json").assert_fails(2, &["version 99", "reads version 1"]);
+    desk.write("full.json", &plan.replacen("\"mu\": 0.8", "\"mu\": 0.9", 1));
+    desk.run("verify full.json").assert_fails(4, &["does not verify: claims"]);
     desk.write("other.json", "{\"format\": \"something-else\"}");
     desk.run("verify other.json").assert_fails(2, &["not a plan file"]);
     desk.write("text.json", "hello");

@@ -59,7 +59,7 @@ pub enum MeshError {
     },
     /// Edges with one facet only.
     #[error(
-        "the mesh is not closed: {count} edges have one facet only, the first from {from:?} to {to:?}; fill the holes"
+        "the mesh is not closed: {count} edges have one facet only, the first from {from:.5?} to {to:.5?}; fill the holes"
     )]
     Open {
         /// How many edges are open.
@@ -71,7 +71,7 @@ pub enum MeshError {
     },
     /// An edge with more than two facets, or two facets of opposite orientation.
     #[error(
-        "the edge from {from:?} to {to:?} belongs to more than two facets or to facets of opposite orientation; orient and repair the mesh"
+        "the edge from {from:.5?} to {to:.5?} belongs to more than two facets or to facets of opposite orientation; orient and repair the mesh"
     )]
     NotManifold {
         /// Start of the edge (m).

@@ -1,7 +1,7 @@
 //! A planning problem as plain data: what a scenario file says, and what a plan file repeats.
 
 use super::{HandDescription, Limits, ObjectDescription, ObstacleDescription};
-use crate::{Pose, Rotation, Vec3};
+use crate::{Body, FingerIndex, Pose, Rotation, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -137,6 +137,26 @@ pub struct Problem {
 
 fn default_gravity() -> [f64; 3] {
     [0.0, 0.0, -9.81]
+}
+
+impl Problem {
+    /// A body in words, with the name that the problem gives it; by its number where it has none.
+    pub fn name_of(&self, body: Body) -> String {
+        let finger = |index: FingerIndex| match self.hand.finger.get(index.index()) {
+            Some(finger) if !finger.name.is_empty() => format!("finger `{}`", finger.name),
+            _ => format!("finger {}", index.0),
+        };
+        match body {
+            Body::Palm => "the palm".into(),
+            Body::Object => "the object".into(),
+            Body::Obstacle(index) => match self.obstacle.get(usize::from(index)) {
+                Some(obstacle) if !obstacle.name.is_empty() => format!("obstacle `{}`", obstacle.name),
+                _ => format!("`obstacle[{index}]`"),
+            },
+            Body::Link(index, link) => format!("link {link} of {}", finger(index)),
+            Body::Fingertip(index) => format!("the tip of {}", finger(index)),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! Why a run cannot be made at all.
 
 use crate::scenario::{Scenario, ScenarioError};
+use regrasp_api::{Body, BodyPair, FingerGrasp};
 use regrasp_host::HostError;
 use regrasp_plan::ConvertError;
-use regrasp_planner::PlanError;
+use regrasp_planner::{End, PlanError};
 use thiserror::Error;
 
 /// A run cannot be made; "no plan found" is not among these but an outcome.
@@ -28,7 +29,44 @@ impl RunError {
     pub(super) fn of_planner(scenario: &Scenario, error: PlanError) -> Self {
         match error {
             PlanError::Call(error) => Self::Call(error),
+            PlanError::Collision { end, pair } => Self::Scenario(scenario.refuse(&collision(
+                scenario,
+                &end.to_string(),
+                pair,
+                "choose another grasp or move the object",
+            ))),
+            PlanError::Unstable { end, friction } => {
+                Self::Scenario(scenario.refuse(&unstable(scenario, end, friction)))
+            }
             error => Self::Scenario(scenario.refuse(&error)),
         }
     }
+}
+
+/// The message for two bodies that are too close at the place `key`.
+pub(super) fn collision(scenario: &Scenario, key: &str, pair: BodyPair, fix: &str) -> String {
+    let problem = &scenario.problem;
+    let clear = problem.limits.tolerances.clearance + problem.limits.resolution.clearance;
+    let [a, b] = [pair.0, pair.1].map(|body: Body| problem.name_of(body));
+    format!("`{key}`: {a} and {b} overlap, or are closer than the clearance of {:.3} mm; {fix}", clear * 1e3)
+}
+
+fn unstable(scenario: &Scenario, end: End, friction: f64) -> String {
+    let problem = &scenario.problem;
+    let grasp = match end {
+        End::Start => problem.start.grasp.as_deref(),
+        End::Goal(index) => problem.goal.get(index).and_then(|goal| goal.grasp.as_deref()),
+    };
+    let touches = |entry: &&(&FingerGrasp, String)| entry.0.contact.is_some();
+    let names = problem.hand.finger.iter().map(|finger| format!("`{}`", finger.name));
+    let entries: Vec<_> = grasp.unwrap_or_default().iter().zip(names).collect();
+    let holding: Vec<&str> = entries.iter().filter(touches).map(|(_, name)| name.as_str()).collect();
+    let held = match holding.as_slice() {
+        [] => "no finger has a `contact`, so that nothing holds the object".to_owned(),
+        names => format!("the object is not held by {} contacts ({})", names.len(), names.join(", ")),
+    };
+    format!(
+        "`{end}.grasp`: the grasp is not stable: with friction {friction}, {held}; give more fingers a `contact`, spread the contacts round \
+         the object, or raise the friction"
+    )
 }

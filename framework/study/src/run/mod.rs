@@ -5,13 +5,14 @@ mod plan_file;
 
 pub use error::*;
 
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, ScenarioError};
 use regrasp_api::{Clearance, GuardedService, Hand, Interrupt, Parts};
 use regrasp_host::{Choices, PluginSet, Registry, Source};
 use regrasp_plan::{Plan, StoppedBy};
 use regrasp_planner::{Clock, Drivers, Outcome, Progress, Request, Status, Stuck};
 use regrasp_verify::Verdict;
 use regrasp_world::SceneClearance;
+use std::iter;
 use std::path::Path;
 
 /// An interrupt that knows what it was.
@@ -101,6 +102,7 @@ impl<'a> Setup<'a> {
             Path::new(""),
         )
         .map_err(|error| scenario.refuse(&error))?;
+        check_poses(scenario, &clearance)?;
         let parts = Parts { object: &scenario.object, hand: scenario.hand.as_ref() };
         let plugins = PluginSet::build(registry, &choices, &parts)?;
         let loaded =
@@ -178,6 +180,21 @@ impl<'a> Setup<'a> {
     fn hand(&self) -> &dyn Hand {
         self.scenario.hand.as_ref()
     }
+}
+
+/// Refuses poses of start and goals at which the object itself is in collision: no grasp could mend that.
+fn check_poses(scenario: &Scenario, clearance: &SceneClearance) -> Result<(), ScenarioError> {
+    let problem = &scenario.problem;
+    let start = ("start.pose".to_owned(), &problem.start.pose);
+    let goals = problem.goal.iter().enumerate().map(|(i, goal)| (format!("goal[{i}].pose"), &goal.pose));
+    for (key, pose) in iter::once(start).chain(goals) {
+        let X_HO = pose.pose().map_err(|reason| scenario.refuse(&format!("`{key}`: {reason}")))?;
+        if let Err(pair) = clearance.object_free(&X_HO) {
+            let fix = "move one of them";
+            return Err(scenario.refuse(&error::collision(scenario, &key, pair, fix)));
+        }
+    }
+    Ok(())
 }
 
 fn stopped_by(outcome: &Outcome, stop: &dyn Stop) -> Option<StoppedBy> {
