@@ -15,6 +15,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-planner", &["regrasp-api", "regrasp-plan"]),
     ("regrasp-verify", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
     ("regrasp-conformance", &["regrasp-api", "regrasp-world"]),
+    ("regrasp-physics", &["regrasp-api", "regrasp-world"]),
 ];
 
 /// Packages that may use everything but the command line.
@@ -23,12 +24,12 @@ const FREE: &[&str] = &["regrasp-study", "regrasp"];
 /// Heavy or opinionated packages, and the only ones of ours that may use them directly.
 const PRIVATE: &[(&str, &[&str])] = &[
     ("parry3d-f64", &["regrasp-world", "regrasp-verify"]),
-    ("clarabel", &["regrasp-verify", "regrasp-stability-tests"]),
+    ("clarabel", &["regrasp-verify", "regrasp-stability-tests", "regrasp-physics"]),
     ("rayon", &["regrasp-planner"]),
     ("inventory", &["regrasp-api", "regrasp-host", "plugins"]),
     ("toml", &["regrasp-study", "regrasp"]),
     ("clap", &["regrasp"]),
-    ("rapier3d-f64", &[]),
+    ("rapier3d-f64", &["regrasp-physics"]),
     ("faer", &[]),
     ("rand", &[]),
 ];
@@ -95,6 +96,10 @@ fn allowed(package: &Package) -> Option<BTreeSet<&'static str>> {
     // A dynamic shim exports one crate of plugins and does nothing else.
     if package.name == "regrasp-template-dynamic" {
         return Some(["regrasp-api", "regrasp-template"].into());
+    }
+    if package.name == "regrasp-local-planners" {
+        // `rapier-checked` simulates.
+        return Some(["regrasp-api", "regrasp-physics"].into());
     }
     if package.is_plugin {
         return Some(["regrasp-api"].into());
