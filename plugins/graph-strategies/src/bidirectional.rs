@@ -60,7 +60,7 @@ impl Bidirectional {
 
     /// The node to extend, of the tree whose turn it is.
     fn node_to_extend(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> NodeId {
-        let (tree, other) = if graph.generated().0 % 2 == 0 {
+        let (tree, other) = if graph.generated().0.is_multiple_of(2) {
             (Tree::Start, Tree::Goals)
         } else {
             (Tree::Goals, Tree::Start)

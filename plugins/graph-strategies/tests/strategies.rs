@@ -199,7 +199,7 @@ fn bidirectional_extends_its_trees_in_turn() {
             let in_goals = |node: NodeId| {
                 graph.goals().iter().any(|&goal| graph.component(goal) == graph.component(node))
             };
-            if graph.generated().0 % 2 == 0 {
+            if graph.generated().0.is_multiple_of(2) {
                 of_start += 1;
                 assert!(in_start(node));
             } else {
