@@ -27,6 +27,8 @@
 
 pub use regrasp_api as api;
 pub use regrasp_host as host;
+#[cfg(feature = "rapier")]
+pub use regrasp_physics as physics;
 pub use regrasp_plan as plan;
 pub use regrasp_planner as planner;
 pub use regrasp_study as study;

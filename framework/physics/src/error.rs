@@ -21,6 +21,9 @@ pub enum PhysicsError {
     /// The object's shape.
     #[error("the object's shape cannot be simulated: {0}")]
     Shape(String),
+    /// The problem does not make a world.
+    #[error("{0}")]
+    Problem(String),
     /// The plan relies on torsional friction.
     #[error(
         "rapier's contacts carry no torsional friction, but the contact model relies on it; use `contact-model/pcwf`, or a simulator that has it"

@@ -17,10 +17,12 @@ const LINK_INERTIA: f64 = 2e-6;
 const ARMATURE: f64 = 5e-5;
 const LINEAR_ARMATURE: f64 = 0.02;
 
-/// Collision groups: fingertips meet the object, the object meets what is fixed.
+/// Collision groups: fingertips meet the object's surface and what is fixed, the object's hull meets what is fixed.
 pub(crate) const TIPS: Group = Group::GROUP_1;
 pub(crate) const OBJECT: Group = Group::GROUP_2;
-pub(crate) const FIXED: Group = Group::GROUP_3;
+/// The object's convex hull, for what is fixed.
+pub(crate) const HULL: Group = Group::GROUP_3;
+pub(crate) const FIXED: Group = Group::GROUP_4;
 
 pub(crate) fn groups(is: Group, meets: Group) -> InteractionGroups {
     InteractionGroups::new(is, meets, InteractionTestMode::And)
@@ -97,7 +99,7 @@ impl SimulatedFinger {
             .translation(to_glam(&(tip.p_HF - parent.1)))
             .density(0.0)
             .friction(settings.friction.unwrap_or(0.0))
-            .collision_groups(groups(TIPS, OBJECT));
+            .collision_groups(groups(TIPS, OBJECT | FIXED));
         let tip = world.colliders.insert_with_parent(ball, parent.0, &mut world.bodies);
         let finger = Self { joints: chain, link: parent.0, tip };
         finger.prepare(world);

@@ -1,4 +1,4 @@
-//! Simulates transfers in rapier3d: the hand as jointed bodies driven by motors, the object free under gravity.
+//! Simulates transfers and whole motions in rapier3d: the hand as jointed bodies driven by motors, the object free under gravity.
 //!
 //! What is simulated:
 //! - each finger as a chain of bodies with the hand's joint axes, in reduced coordinates (no joint can come apart); each joint driven by a motor
@@ -16,9 +16,11 @@
 mod border;
 mod error;
 mod finger;
+mod fixed;
 mod grip;
 mod hold;
 mod pace;
+mod replay;
 mod report;
 mod settings;
 mod simulator;
@@ -27,6 +29,7 @@ mod transfer;
 
 pub use error::PhysicsError;
 pub use pace::Pace;
+pub use replay::{ReplayReport, ReplaySettings, Stage, StageReport, replay};
 pub use report::{Bounds, Failure, Happening, Outcome};
 pub use settings::SimulationSettings;
 pub use transfer::TransferSimulator;

@@ -31,7 +31,7 @@ impl Default for SimulationSettings {
             damping_time: 5e-3,
             friction: None,
             mass: None,
-            time_step: 1e-3,
+            time_step: 5e-4,
             grip: None,
             effort_share: 0.8,
         }
@@ -52,7 +52,7 @@ impl SimulationSettings {
     }
 }
 
-fn check(key: &'static str, value: f64, low: f64, high: f64) -> Result<(), PhysicsError> {
+pub(crate) fn check(key: &'static str, value: f64, low: f64, high: f64) -> Result<(), PhysicsError> {
     if (low..=high).contains(&value) {
         return Ok(());
     }

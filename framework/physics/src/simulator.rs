@@ -1,7 +1,8 @@
 //! Steps the simulated world along a schedule and measures what happens to the object.
 
 use crate::border::{from_glam, pose_from_glam, pose_to_glam, to_glam};
-use crate::finger::{FIXED, OBJECT, SimulatedFinger, TIPS, groups};
+use crate::finger::{FIXED, HULL, OBJECT, SimulatedFinger, TIPS, groups};
+use crate::fixed::{self, Placed};
 use crate::{Bounds, Failure, Happening, Outcome, SimulationSettings};
 use rapier3d_f64::dynamics::{FrictionModel, IntegrationParameters, SpringCoefficients};
 use rapier3d_f64::prelude::{
@@ -39,12 +40,17 @@ pub(crate) struct Simulator {
     slip_O: PerFinger<Vec3>,
 }
 
-/// Hand, object and gravity (m/s², in H), with the object's shape as rapier has it.
+/// Hand, object, what is fixed, and gravity (m/s², in H), with shapes as rapier has them.
 #[derive(Clone, Copy)]
 pub(crate) struct Scene<'a> {
     pub hand: &'a dyn Hand,
     pub object: &'a ObjectModel,
+    /// The object's surface as fingertips meet it.
     pub shape: &'a SharedShape,
+    /// Palm and obstacles, in H.
+    pub fixed: &'a [Placed],
+    /// The object as they meet it.
+    pub hull: Option<&'a SharedShape>,
     pub g_H: Vec3,
 }
 
@@ -79,6 +85,7 @@ impl Simulator {
             .iter()
             .map(|(finger, joints)| SimulatedFinger::new(&mut world, scene.hand, finger, joints, &settings))
             .collect();
+        fixed::insert(&mut world, scene.fixed);
         let (object, surface) = insert_object(&mut world, scene, &settings, &start.X_HO);
         let slip_O = PerFinger::filled(start.joints.len(), Vec3::zeros());
         Self { world, fingers, object, surface, radius: scene.hand.fingertip_radius(), slip_O }
@@ -200,8 +207,15 @@ fn insert_object(
     let collider = ColliderBuilder::new(scene.shape.clone())
         .density(0.0)
         .friction(settings.friction.unwrap_or(model.friction))
-        .collision_groups(groups(OBJECT, TIPS | FIXED));
+        .collision_groups(groups(OBJECT, TIPS));
     let collider = world.colliders.insert_with_parent(collider, body, &mut world.bodies);
+    if let Some(hull) = scene.hull {
+        let hull = ColliderBuilder::new(hull.clone())
+            .density(0.0)
+            .friction(model.friction)
+            .collision_groups(groups(HULL, FIXED));
+        world.colliders.insert_with_parent(hull, body, &mut world.bodies);
+    }
     (body, collider)
 }
 

@@ -49,7 +49,7 @@ impl TransferSimulator {
         }
         let mut outcome = Outcome::new(hand.finger_count());
         if let Some(first) = knots.first() {
-            let scene = Scene { hand, object, shape: &self.shape, g_H };
+            let scene = Scene { hand, object, shape: &self.shape, fixed: &[], hull: None, g_H };
             Simulator::new(&scene, &self.settings, first).run(&knots, bounds, &mut outcome);
         }
         if held < states.len() && outcome.is_good() {

@@ -100,7 +100,7 @@ fn a_motion_that_fails_late_is_cut_to_what_was_simulated() {
     // A bound that a long motion exceeds in the end and half of it does not.
     let mut cut = 0;
     for (from, to, rolled) in transfers(&bench, 12) {
-        for max_slip in [6e-5, 8e-5, 1e-4, 1.2e-4] {
+        for max_slip in [1.5e-5, 2.5e-5, 3.5e-5, 5e-5] {
             let settings = RapierCheckedSettings { max_slip, retries: 4, ..Default::default() };
             let (reached, path, _) = connect(&bench, &checked(&bench, settings), &from, &to);
             assert_eq!(path.states[0], from);

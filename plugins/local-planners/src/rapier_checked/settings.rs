@@ -18,8 +18,8 @@ pub struct RapierCheckedSettings {
     /// Largest angle of the object from the planned orientation (rad), 1e-4 to 3.
     #[schemars(range(min = 1e-4, max = 3.0))]
     pub max_angle: f64,
-    /// Largest net slip of a contact in one transfer (m), 1e-5 to 1. Friction in the simulation is a little soft: a contact that sticks creeps by
-    /// 0.1 to 0.3 mm at the default time step, in proportion to it.
+    /// Largest net slip of a contact in one transfer (m), 1e-5 to 1. Friction in the simulation is a little soft: a contact that sticks creeps by up to
+    /// 0.1 mm at the default time step, in proportion to it.
     #[schemars(range(min = 1e-5, max = 1.0))]
     pub max_slip: f64,
     /// Largest gap between a holding fingertip and the object (m), 1e-6 to 9e-4.
@@ -76,7 +76,7 @@ impl Default for RapierCheckedSettings {
             rolling: RollingSettings::default(),
             max_distance: 2e-3,
             max_angle: 0.05,
-            max_slip: 1e-3,
+            max_slip: 5e-4,
             max_gap: 5e-4,
             stiffness,
             linear_stiffness,
