@@ -33,7 +33,7 @@ impl Summary<'_> {
             "seed": self.options.seed,
             "threads": self.options.threads,
             "goals": self.scenario.problem.goal.len(),
-            "goals_reached": run.outcome.goals_reached,
+            "goals_reached": run.outcome.goal_ends.len(),
             "time_s": run.planning_s,
             "verification_s": run.verification_s,
             "phases_s": statistics.time_s,
@@ -70,7 +70,7 @@ impl Summary<'_> {
             _ => format!(
                 "{}: {} of {} goals reached (seed {})\n",
                 self.scenario.name,
-                run.outcome.goals_reached,
+                run.outcome.goal_ends.len(),
                 self.scenario.problem.goal.len(),
                 self.options.seed
             ),
@@ -156,7 +156,7 @@ impl Summary<'_> {
             Some(Stuck::StartGrasp) => "no admissible grasp was found at the start".to_owned(),
             Some(Stuck::GoalGrasp(goal)) => format!("no admissible grasp was found at goal {}", goal + 1),
             Some(Stuck::Search(goal)) => format!("the search for goal {} found no way", goal + 1),
-            None => format!("the search was stopped on the way to goal {}", outcome.goals_reached + 1),
+            None => format!("the search was stopped on the way to goal {}", outcome.goal_ends.len() + 1),
         };
         let stopped = match self.run.stopped_by {
             Some(StoppedBy::TimeLimit) => "no plan within the time limit",

@@ -392,6 +392,6 @@ mod tests {
     fn defaults_fill_what_is_absent_and_keep_what_is_there() {
         let mut settings = Map::from_iter([("smoothing".to_owned(), json!(2))]);
         fill_defaults(&mut settings, &schema_of::<regrasp_api::Budget>());
-        assert_eq!(Value::Object(settings), json!({"max_nodes": 5000, "smoothing": 2}));
+        assert_eq!(Value::Object(settings), json!({"max_nodes": 1000, "smoothing": 2}));
     }
 }

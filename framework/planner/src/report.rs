@@ -59,8 +59,8 @@ pub struct Outcome {
     pub stuck: Option<Stuck>,
     /// The motion; through fewer goals than asked for unless solved.
     pub motion: Motion,
-    /// How many goals the motion reaches, in turn.
-    pub goals_reached: usize,
+    /// For each goal that the motion reaches, in turn, how many of its segments are done by then.
+    pub goal_ends: Vec<usize>,
     /// Counts, and times of the phases `endpoints`, `search`, `smoothing` and `timing`.
     pub statistics: Statistics,
     /// Calls and rejections by cause.

@@ -270,7 +270,6 @@ impl Run<'_> {
             Err(Halt::Failed(PlanError::Call(CallError::Interrupted))) => (Status::Interrupted, None),
             Err(Halt::Failed(error)) => return Err(error),
         };
-        let goals_reached = self.draft.marks.len();
         self.count_graph();
         match self.timed("smoothing", Self::smooth) {
             // Interrupted here, the motion is complete, only less smooth than it could be.
@@ -282,8 +281,9 @@ impl Run<'_> {
         self.statistics.regrasps = regrasps(&motion.segments);
         self.statistics.transfers = motion.segments.len() - self.statistics.regrasps;
         self.statistics.plugins = plugin_statistics(&self.tally);
+        let goal_ends = self.draft.marks.iter().map(|mark| mark.boundary).collect();
         let Self { statistics, tally, warnings, .. } = self;
-        Ok(Outcome { status, stuck, motion, goals_reached, statistics, tally, warnings })
+        Ok(Outcome { status, stuck, motion, goal_ends, statistics, tally, warnings })
     }
 
     fn count_graph(&mut self) {

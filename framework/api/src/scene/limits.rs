@@ -82,7 +82,8 @@ impl Default for Resolution {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Budget {
-    /// Most nodes to generate for one goal.
+    /// Most nodes to generate for one goal. The default is five times what the hardest built-in scenario needs, and tens of seconds where
+    /// there is no way.
     pub max_nodes: usize,
     /// Most seconds for the whole run; none where absent.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -93,7 +94,7 @@ pub struct Budget {
 
 impl Default for Budget {
     fn default() -> Self {
-        Self { max_nodes: 5000, time_limit: None, smoothing: 2 }
+        Self { max_nodes: 1000, time_limit: None, smoothing: 2 }
     }
 }
 

@@ -132,7 +132,7 @@ impl<'a> Setup<'a> {
         let planned = options.clock.seconds();
         let stopped_by = stopped_by(&outcome, options.stop);
         let (mut plan, mut verdict) = (None, None);
-        if outcome.goals_reached > 0 {
+        if !outcome.goal_ends.is_empty() {
             let mut file = self.plan_file(&outcome, options.seed, stopped_by)?;
             let judged = regrasp_verify::verify(&file);
             file.certificate = judged.certificate.clone();
