@@ -4,4 +4,7 @@ mod bvh;
 mod closest;
 pub mod geodesic;
 mod polyhedron;
+mod rolling;
 mod sharp;
+pub mod steiner;
+mod strip;
