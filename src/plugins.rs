@@ -101,11 +101,11 @@ fn settings(properties: &Map<String, Value>) -> String {
     table.text()
 }
 
-/// The range of a setting as its schema states it; the empty text where it states none.
+/// The range of a setting as its schema states it; the empty text where it does not state both ends.
 fn range(property: &Value) -> String {
     let end = |key: &str| property.get(key).map(Value::to_string).unwrap_or_default();
     match (end("minimum"), end("maximum")) {
-        (low, high) if low.is_empty() && high.is_empty() => String::new(),
+        (low, high) if low.is_empty() || high.is_empty() => String::new(),
         (low, high) => format!("{low}..={high}"),
     }
 }

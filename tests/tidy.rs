@@ -26,6 +26,8 @@ const PRIVATE: &[(&str, &[&str])] = &[
     ("parry3d-f64", &["regrasp-world", "regrasp-verify"]),
     ("clarabel", &["regrasp-verify", "regrasp-stability-tests", "regrasp-physics"]),
     ("rayon", &["regrasp-planner"]),
+    ("libloading", &["regrasp-host"]),
+    ("object", &["regrasp-host"]),
     ("inventory", &["regrasp-api", "regrasp-host", "plugins"]),
     ("toml", &["regrasp-study", "regrasp"]),
     ("clap", &["regrasp"]),

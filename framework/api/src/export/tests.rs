@@ -61,7 +61,7 @@ fn a_value_after_a_panic_is_harmless_and_the_fault_ends_the_call() {
     assert_eq!(unless_fault(Ok(())), Err(panicked("no cone")));
     assert_eq!(context.proceed(), Ok(()));
     drop(model);
-    assert_eq!(take_fault(), Some(panicked("no end")));
+    assert_eq!(take_fault(), None, "the end of an object spoils no call");
 }
 
 #[test]
@@ -106,8 +106,6 @@ fn a_call_that_can_fail_fails_with_the_panics_message() {
     let mut context = Context::new(Random::from_key(0, 0, 0, 0), &Uninterrupted);
     assert_eq!(strategy.next(&Nothing, &mut context), Err(panicked("no step")));
     assert_eq!(take_fault(), None, "the error was returned and needs no memory");
-    drop(strategy);
-    take_fault();
 }
 
 #[test]
@@ -134,8 +132,6 @@ fn every_function_of_an_entry_is_guarded() {
     let model = build("", &parts).unwrap();
     model.cone(&CONTACT, 0.5);
     assert_eq!(take_fault(), Some(panicked("no cone")));
-    drop(model);
-    take_fault();
 }
 
 /// A method that a trait provides and a guard does not pass on would run the provided code in place of the plugin's own, silently.
