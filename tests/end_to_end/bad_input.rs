@@ -216,7 +216,7 @@ fn plan_files_that_are_none() {
     desk.run("verify short.json").assert_fails(2, &["short.json", "truncated"]);
     desk.write("later.json", plan.replacen("\"version\": 1", "\"version\": 99", 1));
     desk.run("verify later.json").assert_fails(2, &["version 99", "reads version 1"]);
-    desk.write("full.json", &plan.replacen("\"mu\": 0.8", "\"mu\": 0.9", 1));
+    desk.write("full.json", plan.replacen("\"mu\": 0.8", "\"mu\": 0.9", 1));
     desk.run("verify full.json").assert_fails(4, &["does not verify: claims"]);
     desk.write("other.json", "{\"format\": \"something-else\"}");
     desk.run("verify other.json").assert_fails(2, &["not a plan file"]);
