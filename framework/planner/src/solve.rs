@@ -16,8 +16,6 @@ use regrasp_api::{
 };
 use regrasp_plan::{Motion, Segment, Statistics, TimingLimits, assign_times, plugin_statistics};
 
-/// How far beyond start and goals the object may be sampled, where the problem gives no workspace (m).
-const WORKSPACE_MARGIN: f64 = 0.015;
 /// How many grasps are looked for at a goal given by its pose alone before the search starts: a grasp costs a hundredth of a plan,
 /// and of the paper's problems all need fewer nodes, regrasps and instructions with six than with two or twelve.
 const FIRST_GOALS: usize = 6;
@@ -56,7 +54,6 @@ pub struct Request<'a> {
 /// Plans a motion from the start through all goals.
 pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
     let poses = poses(request.problem)?;
-    let (lower, upper) = workspace(request.problem, &poses);
     // A sampler from a library asks for admission in its own binary, which a panic could not leave.
     let admissible = GuardedService(&Leavable as &dyn Admissible);
     let task = Task {
@@ -70,7 +67,7 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
         g_H: Vec3::from(request.problem.gravity),
         tolerances: &request.problem.limits.tolerances,
         resolution: &request.problem.limits.resolution,
-        workspace: (lower, upper),
+        workspace: request.problem.sampling_box(&poses),
         landmarks: &poses,
     };
     let choices = finger_choices(&task)?;
@@ -111,17 +108,6 @@ fn poses(problem: &Problem) -> Result<Vec<Pose>, PlanError> {
         poses.push(pose);
     }
     Ok(poses)
-}
-
-fn workspace(problem: &Problem, poses: &[Pose]) -> (Vec3, Vec3) {
-    if let Some(given) = problem.workspace {
-        return (given.lower.into(), given.upper.into());
-    }
-    let margin = Vec3::repeat(WORKSPACE_MARGIN);
-    let positions = || poses.iter().map(|pose| pose.translation.vector);
-    let lower = positions().reduce(|a, b| a.inf(&b)).unwrap_or_default();
-    let upper = positions().reduce(|a, b| a.sup(&b)).unwrap_or_default();
-    (lower - margin, upper + margin)
 }
 
 /// The sets of fingers that may hold the object: GS_n and beyond.

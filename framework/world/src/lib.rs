@@ -11,5 +11,5 @@ pub use clearance::SceneClearance;
 pub use error::WorldError;
 pub use hand::{ChainHand, HandError, LinkFrame, LinkFrames};
 pub use mesh::{MAX_FACETS, load_mesh};
-pub use object::{embed_object, load_object, primitive_mesh};
-pub use scene::{World, embed_problem};
+pub use object::{load_object, primitive_mesh};
+pub use scene::{World, check_problem, check_units, embed_hand, embed_object, embed_obstacles};

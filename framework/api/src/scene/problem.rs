@@ -139,7 +139,23 @@ fn default_gravity() -> [f64; 3] {
     [0.0, 0.0, -9.81]
 }
 
+/// How far beyond start and goals the object may be sampled where the problem gives no workspace (m).
+const WORKSPACE_MARGIN: f64 = 0.015;
+
 impl Problem {
+    /// Lowest and highest coordinates of the object's origin in H (m) for samples: the workspace, or a box about `poses`, those of start
+    /// and goals.
+    pub fn sampling_box(&self, poses: &[Pose]) -> (Vec3, Vec3) {
+        if let Some(given) = self.workspace {
+            return (given.lower.into(), given.upper.into());
+        }
+        let margin = Vec3::repeat(WORKSPACE_MARGIN);
+        let positions = || poses.iter().map(|pose| pose.translation.vector);
+        let lower = positions().reduce(|a, b| a.inf(&b)).unwrap_or_default();
+        let upper = positions().reduce(|a, b| a.sup(&b)).unwrap_or_default();
+        (lower - margin, upper + margin)
+    }
+
     /// A body in words, with the name that the problem gives it; by its number where it has none.
     pub fn name_of(&self, body: Body) -> String {
         let finger = |index: FingerIndex| match self.hand.finger.get(index.index()) {

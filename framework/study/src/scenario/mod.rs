@@ -3,9 +3,7 @@
 //! A scenario is a file, or the name of a built-in one. Everything that a file can have wrong is a [`ScenarioError`] with its place; start and
 //! goal grasps alone are left to the planner, which knows stability and collision.
 
-mod check;
 mod document;
-mod embed;
 mod error;
 mod file;
 mod library;
@@ -17,7 +15,9 @@ pub use library::*;
 use document::{Document, key_path};
 use regrasp_api::{HandDescription, ObjectModel, Problem, Slot};
 use regrasp_host::{Choices, HostError, Registry, Step, near};
-use regrasp_world::{ChainHand, load_object};
+use regrasp_world::{
+    ChainHand, check_problem, check_units, embed_hand, embed_object, embed_obstacles, load_object,
+};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -80,11 +80,11 @@ pub fn from_text(
     let choices = choices(&document, &content.plugins, registry)?;
     let (hand, description) = hand(&document, &content.hand, folder)?;
     let mut problem = problem(&content, description);
-    check::check_problem(&document, &problem)?;
-    embed::embed_obstacles(&mut problem.obstacle, folder).map_err(|error| refused(&document, &error))?;
+    check_problem(&problem).map_err(|error| refused(&document, &error))?;
+    embed_obstacles(&mut problem.obstacle, folder).map_err(|error| refused(&document, &error))?;
     let object = load_object(&problem.object, folder).map_err(|error| refused(&document, &error))?;
-    check::check_sizes(&document, &hand, &object)?;
-    embed::embed_object(&mut problem.object, &object);
+    check_units(&hand, &object, &content.object.shape).map_err(|error| refused(&document, &error))?;
+    embed_object(&mut problem.object, &object);
     Ok(Scenario {
         name: content.name.clone().unwrap_or_else(|| stem(file)),
         summary: content.summary,
@@ -157,7 +157,7 @@ fn hand(
         }
     };
     let mut description: HandDescription = document.read()?;
-    embed::embed_hand(&mut description, &folder).map_err(|error| refused(&document, &error))?;
+    embed_hand(&mut description, &folder).map_err(|error| refused(&document, &error))?;
     let hand = ChainHand::new(description.clone()).map_err(|error| refused(&document, &error))?;
     Ok((hand, description))
 }

@@ -192,7 +192,7 @@ fn poses_that_make_no_sense_are_refused() {
 fn an_object_in_the_wrong_unit_is_refused_with_the_likely_fix() {
     assert_says(
         &refusal("radius = 0.030", "radius = 30.0"),
-        &["are the lengths in metres?", "scale = 0.001"],
+        &["are the lengths in metres?", "multiplied by 0.001"],
     );
 }
 

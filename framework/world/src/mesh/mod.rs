@@ -33,14 +33,13 @@ pub fn load_mesh(source: &MeshSource, base: &Path, key: &str) -> Result<Mesh, Wo
     }
 }
 
-/// The same mesh given in place: what a plan file carries so that it stands alone.
-pub(crate) fn embedded(source: &MeshSource, base: &Path, key: &str) -> Result<MeshSource, WorldError> {
-    let mesh = load_mesh(source, base, key)?;
-    Ok(MeshSource {
+/// The mesh given in place: what a plan file carries so that it stands alone.
+pub(crate) fn in_memory(mesh: &Mesh) -> MeshSource {
+    MeshSource {
         vertices: mesh.vertices().iter().map(|&v| v.into()).collect(),
         facets: mesh.facets().to_vec(),
         ..Default::default()
-    })
+    }
 }
 
 fn in_place(source: &MeshSource, key: &str) -> Result<Mesh, WorldError> {

@@ -148,9 +148,10 @@ fn scale_and_flip_are_applied_and_embedding_keeps_the_mesh() {
     let source = MeshSource { scale: Some(0.001), ..file("ring.stl") };
     let read = folder.load(source.clone()).unwrap();
     assert!((read.radius() - mesh.radius()).abs() < 1e-8);
-    let alone = embedded(&source, folder.0.path(), "object.shape").unwrap();
+    let load = |source: &MeshSource, base| load_mesh(source, base, "object.shape").unwrap();
+    let alone = in_memory(&load(&source, folder.0.path()));
     assert_eq!(load_mesh(&alone, Path::new("/nowhere"), "object.shape").unwrap(), read);
-    assert_eq!(embedded(&alone, Path::new("/nowhere"), "object.shape").unwrap(), alone);
+    assert_eq!(in_memory(&load(&alone, Path::new("/nowhere"))), alone);
     let inside_out = folder.load(MeshSource { flip: Some(true), ..source }).unwrap_err();
     assert!(inside_out.to_string().contains("`flip = true`"), "{inside_out}");
     let scale = folder.load(MeshSource { scale: Some(-1.0), ..file("ring.stl") }).unwrap_err().to_string();

@@ -3,7 +3,7 @@
 mod pattern;
 
 use crate::error::{WorldError, check_range};
-use crate::mesh::{MAX_FACETS, embedded, load_mesh};
+use crate::mesh::{MAX_FACETS, load_mesh};
 use regrasp_api::{Mesh, MeshError, ObjectDescription, ObjectModel, ObjectShape, Primitive, Vec3};
 use std::path::Path;
 
@@ -27,15 +27,6 @@ pub fn load_object(description: &ObjectDescription, base: &Path) -> Result<Objec
         }
     };
     Ok(ObjectModel::new(mesh, primitive, description.mass, description.friction))
-}
-
-/// The same object with its mesh, if it is in a file, written out in place, so that the description stands alone.
-pub fn embed_object(description: &ObjectDescription, base: &Path) -> Result<ObjectDescription, WorldError> {
-    let mut alone = description.clone();
-    if let ObjectShape::Mesh(source) = &mut alone.shape {
-        *source = embedded(source, base, "object.shape")?;
-    }
-    Ok(alone)
 }
 
 /// A closed, outward mesh of `primitive` with about `facets` facets (12 for a cuboid), its vertices on the true surface.

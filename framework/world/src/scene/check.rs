@@ -3,68 +3,84 @@
 use crate::error::{WorldError, check_range};
 use crate::hand::ChainHand;
 use regrasp_api::{
-    FingerGrasp, Hand, Limits, ObjectModel, ObjectShape, ObstacleDescription, Pose, PoseDescription, Problem,
-    Resolution, Tolerances, Vec3, Workspace, angle_between,
+    FingerGrasp, Hand, ObjectModel, ObjectShape, ObstacleDescription, Pose, PoseDescription, Problem,
+    Resolution, Tolerances, Workspace, angle_between,
 };
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
 
 /// An object this many times larger than the hand's fingers reach, or smaller, has probably another unit of length.
 const TOO_LARGE: f64 = 50.0;
 const TOO_SMALL: f64 = 1.0 / 200.0;
 
-/// Refuses tolerances, steps and budgets outside their ranges.
-pub(super) fn check_limits(limits: &Limits) -> Result<(), WorldError> {
-    let Tolerances { closure, slip, normal, clearance, goal_position, goal_angle } = limits.tolerances;
-    let tolerance = |key, value, low, high, unit| {
-        check_range(&format!("limits.tolerances.{key}"), value, low, high, unit)
-    };
-    tolerance("closure", closure, 1e-9, 1e-2, " m")?;
-    tolerance("slip", slip, 1e-9, 1e-1, " m")?;
-    tolerance("normal", normal, 1e-9, PI, " rad")?;
-    tolerance("clearance", clearance, 0.0, 1e-1, " m")?;
-    tolerance("goal_position", goal_position, 0.0, 1e-1, " m")?;
-    tolerance("goal_angle", goal_angle, 0.0, PI, " rad")?;
-    check_resolution(&limits.resolution)?;
-    if let Some(time) = limits.budget.time_limit {
-        check_range("limits.budget.time_limit", time, 0.0, 1e9, " s")?;
+/// Allowed numbers: key, value, lowest, highest, unit.
+type Bound = (&'static str, f64, f64, f64, &'static str);
+
+/// Refuses what can be told to be wrong from the description alone: numbers out of range, goals that coincide, grasps that do not fit the
+/// hand, obstacles of one name. Hand, object and meshes are checked where they are built.
+pub fn check_problem(problem: &Problem) -> Result<(), WorldError> {
+    let limits = &problem.limits;
+    let bounds = tolerance_bounds(&limits.tolerances)
+        .into_iter()
+        .chain(resolution_bounds(&limits.resolution))
+        .chain(other_bounds(problem));
+    for (key, value, low, high, unit) in bounds {
+        check_range(key, value, low, high, unit)?;
     }
-    match limits.budget.max_nodes {
-        0 => Err(WorldError::range("limits.budget.max_nodes", 0, "at least 1")),
-        _ => Ok(()),
-    }
+    problem.workspace.as_ref().map_or(Ok(()), check_workspace)?;
+    obstacle_names(&problem.obstacle)?;
+    poses(problem)?;
+    check_grasps(problem)
 }
 
-fn check_resolution(resolution: &Resolution) -> Result<(), WorldError> {
-    let Resolution {
-        grasp_step,
-        grasp_turn,
-        transfer_step,
-        transfer_turn,
-        regrasp_step,
-        lift,
-        retreat,
-        clearance,
-        edge_margin,
-        friction_margin,
-    } = *resolution;
-    let check = |key: &str, value, low, high, unit| {
-        check_range(&format!("limits.resolution.{key}"), value, low, high, unit)
-    };
-    for (key, step) in
-        [("grasp_step", grasp_step), ("transfer_step", transfer_step), ("regrasp_step", regrasp_step)]
-    {
-        check(key, step, 1e-6, 1.0, " m")?;
+fn tolerance_bounds(tolerances: &Tolerances) -> [Bound; 6] {
+    let Tolerances { closure, slip, normal, clearance, goal_position, goal_angle } = *tolerances;
+    [
+        ("limits.tolerances.closure", closure, 1e-7, 1e-2, " m"),
+        ("limits.tolerances.slip", slip, 1e-7, 1e-2, " m"),
+        ("limits.tolerances.normal", normal, 1e-6, 0.5, " rad"),
+        ("limits.tolerances.clearance", clearance, 0.0, 0.1, " m"),
+        ("limits.tolerances.goal_position", goal_position, 1e-9, 0.1, " m"),
+        ("limits.tolerances.goal_angle", goal_angle, 1e-9, 1.0, " rad"),
+    ]
+}
+
+fn resolution_bounds(resolution: &Resolution) -> [Bound; 11] {
+    [
+        ("limits.resolution.grasp_step", resolution.grasp_step, 1e-5, 0.1, " m"),
+        ("limits.resolution.grasp_turn", resolution.grasp_turn, 1e-4, 1.0, " rad"),
+        ("limits.resolution.transfer_step", resolution.transfer_step, 1e-5, 0.1, " m"),
+        ("limits.resolution.transfer_turn", resolution.transfer_turn, 1e-4, 1.0, " rad"),
+        ("limits.resolution.regrasp_step", resolution.regrasp_step, 1e-5, 0.1, " m"),
+        ("limits.resolution.lift", resolution.lift, 1e-4, 0.2, " m"),
+        ("limits.resolution.retreat[0]", resolution.retreat[0], 0.0, 0.2, " m"),
+        ("limits.resolution.retreat[1]", resolution.retreat[1], 0.0, 0.2, " m"),
+        ("limits.resolution.clearance", resolution.clearance, 0.0, 0.05, " m"),
+        ("limits.resolution.edge_margin", resolution.edge_margin, 0.0, 0.1, " m"),
+        ("limits.resolution.friction_margin", resolution.friction_margin, 0.01, 1.0, ""),
+    ]
+}
+
+fn other_bounds(problem: &Problem) -> [Bound; 6] {
+    let budget = &problem.limits.budget;
+    let [x, y, z] = problem.gravity;
+    [
+        ("limits.budget.max_nodes", budget.max_nodes as f64, 1.0, 1e7, ""),
+        ("limits.budget.smoothing", budget.smoothing as f64, 0.0, 1e6, ""),
+        ("limits.budget.time_limit", budget.time_limit.unwrap_or(1.0), 0.001, 1e7, " s"),
+        ("gravity[0]", x, -1000.0, 1000.0, " m/s²"),
+        ("gravity[1]", y, -1000.0, 1000.0, " m/s²"),
+        ("gravity[2]", z, -1000.0, 1000.0, " m/s²"),
+    ]
+}
+
+fn check_workspace(given: &Workspace) -> Result<(), WorldError> {
+    const LOWER: [&str; 3] = ["workspace.lower[0]", "workspace.lower[1]", "workspace.lower[2]"];
+    const UPPER: [&str; 3] = ["workspace.upper[0]", "workspace.upper[1]", "workspace.upper[2]"];
+    for axis in 0..3 {
+        check_range(LOWER[axis], given.lower[axis], -1e3, 1e3, " m")?;
+        check_range(UPPER[axis], given.upper[axis], given.lower[axis], 1e3, " m")?;
     }
-    for (key, turn) in [("grasp_turn", grasp_turn), ("transfer_turn", transfer_turn)] {
-        check(key, turn, 1e-5, PI / 2.0, " rad")?;
-    }
-    check("lift", lift, 1e-5, 1.0, " m")?;
-    check("retreat[0]", retreat[0], 0.0, 1.0, " m")?;
-    check("retreat[1]", retreat[1], 0.0, 1.0, " m")?;
-    check("clearance", clearance, 0.0, 0.1, " m")?;
-    check("edge_margin", edge_margin, 0.0, 1.0, " m")?;
-    check("friction_margin", friction_margin, 1e-3, 1.0, "")
+    Ok(())
 }
 
 /// The obstacles' names, `obstacle 1` for the first without one; two equal names are refused.
@@ -87,11 +103,7 @@ pub(super) fn obstacle_names(obstacles: &[ObstacleDescription]) -> Result<Vec<St
 }
 
 /// Refuses an object that is far too large or too small for the hand: its unit of length is probably mistaken.
-pub(super) fn check_units(
-    hand: &ChainHand,
-    object: &ObjectModel,
-    shape: &ObjectShape,
-) -> Result<(), WorldError> {
+pub fn check_units(hand: &ChainHand, object: &ObjectModel, shape: &ObjectShape) -> Result<(), WorldError> {
     let fingers = (0..hand.finger_count() as u8).map(regrasp_api::FingerIndex);
     let reach = fingers.map(|finger| hand.finger(finger).reach).fold(0.0, f64::max);
     let size = object.mesh.radius();
@@ -106,36 +118,50 @@ pub(super) fn check_units(
     };
     let reason = format!(
         "the object reaches {size:.3e} m from its origin, the fingers {reach:.3e} m from their bases: too {how} by far; \
-         lengths are in metres, so try {fix}"
+         are the lengths in metres? Try {fix}"
     );
     Err(WorldError::value("object.shape", reason))
 }
 
-/// The poses of start and goals; no goals, and consecutive goals that coincide, are refused.
-pub(super) fn poses(problem: &Problem) -> Result<(Pose, Vec<Pose>), WorldError> {
+/// The poses of the start and the goals, in turn; no goals, and consecutive ones that coincide, are refused.
+pub(super) fn poses(problem: &Problem) -> Result<Vec<Pose>, WorldError> {
     let read =
         |pose: &PoseDescription, key: String| pose.pose().map_err(|reason| WorldError::value(key, reason));
-    let start = read(&problem.start.pose, "start.pose".into())?;
+    let mut poses = vec![read(&problem.start.pose, "start.pose".into())?];
     if problem.goal.is_empty() {
-        return Err(WorldError::value("goal", "at least one goal is needed"));
+        return Err(WorldError::value(
+            "goal",
+            "there is no goal; give at least one `[[goal]]` with its `pose`",
+        ));
     }
-    let goals = problem.goal.iter().enumerate().map(|(i, goal)| read(&goal.pose, format!("goal[{i}].pose")));
-    let goals = goals.collect::<Result<Vec<_>, _>>()?;
-    let tolerances = &problem.limits.tolerances;
-    for (i, pair) in goals.windows(2).enumerate() {
-        let moved = (pair[1].translation.vector - pair[0].translation.vector).norm();
-        let turned = angle_between(&pair[0].rotation, &pair[1].rotation);
-        let same_grasp = problem.goal[i].grasp == problem.goal[i + 1].grasp;
-        if moved <= tolerances.goal_position && turned <= tolerances.goal_angle && same_grasp {
-            let reason = format!("it coincides with `goal[{i}]`; remove one of the two");
-            return Err(WorldError::value(format!("goal[{}]", i + 1), reason));
+    let mut before = ("the start".to_owned(), problem.start.grasp.as_ref());
+    for (i, goal) in problem.goal.iter().enumerate() {
+        let X_HG = read(&goal.pose, format!("goal[{i}].pose"))?;
+        let same_grasp = goal.grasp.is_none() || goal.grasp.as_ref() == before.1;
+        if same_grasp && coincide(&problem.limits.tolerances, &poses[i], &X_HG) {
+            return Err(coincidence(i, &before.0));
         }
+        before = (format!("`goal[{i}]`"), goal.grasp.as_ref());
+        poses.push(X_HG);
     }
-    Ok((start, goals))
+    Ok(poses)
+}
+
+fn coincide(tolerances: &Tolerances, X_HA: &Pose, X_HB: &Pose) -> bool {
+    let apart = (X_HA.translation.vector - X_HB.translation.vector).norm();
+    apart <= tolerances.goal_position
+        && angle_between(&X_HA.rotation, &X_HB.rotation) <= tolerances.goal_angle
+}
+
+fn coincidence(goal: usize, before: &str) -> WorldError {
+    let reason = format!(
+        "`goal[{goal}]` coincides with {before}: there is nothing to do; a full turn is given as several goals, for example four quarters"
+    );
+    WorldError::value(format!("goal[{goal}].pose"), reason)
 }
 
 /// Refuses given grasps that do not fit the hand.
-pub(super) fn check_grasps(problem: &Problem) -> Result<(), WorldError> {
+fn check_grasps(problem: &Problem) -> Result<(), WorldError> {
     check_grasp(problem, problem.start.grasp.as_deref(), "start.grasp")?;
     let goals = problem.goal.iter().enumerate();
     goals
@@ -161,21 +187,4 @@ fn check_grasp(problem: &Problem, grasp: Option<&[FingerGrasp]>, key: &str) -> R
         }
     }
     Ok(())
-}
-
-/// The given box of positions.
-pub(super) fn workspace(given: &Workspace) -> Result<(Vec3, Vec3), WorldError> {
-    for axis in 0..3 {
-        check_range(&format!("workspace.lower[{axis}]"), given.lower[axis], -1e3, 1e3, " m")?;
-        check_range(&format!("workspace.upper[{axis}]"), given.upper[axis], given.lower[axis], 1e3, " m")?;
-    }
-    Ok((given.lower.into(), given.upper.into()))
-}
-
-/// The acceleration of gravity.
-pub(super) fn gravity(given: [f64; 3]) -> Result<Vec3, WorldError> {
-    for (axis, &g) in given.iter().enumerate() {
-        check_range(&format!("gravity[{axis}]"), g, -1e3, 1e3, " m/s²")?;
-    }
-    Ok(given.into())
 }

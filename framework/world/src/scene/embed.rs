@@ -1,25 +1,36 @@
-//! A problem that stands alone: every mesh in place.
+//! Meshes of files written out in place, so that a problem stands alone.
 
 use crate::error::WorldError;
-use crate::mesh::embedded;
-use crate::object::embed_object;
-use regrasp_api::{PlacedShape, Problem, Shape};
+use crate::mesh::{in_memory, load_mesh};
+use regrasp_api::{
+    HandDescription, ObjectDescription, ObjectModel, ObjectShape, ObstacleDescription, PlacedShape, Shape,
+};
 use std::path::Path;
 
-/// The same problem with the meshes of all files written out in place, so that a plan file stands alone.
-pub fn embed_problem(problem: &Problem, base: &Path) -> Result<Problem, WorldError> {
-    let mut alone = problem.clone();
-    alone.object = embed_object(&problem.object, base)?;
-    for (i, obstacle) in alone.obstacle.iter_mut().enumerate() {
-        embed_shape(&mut obstacle.shape, base, &format!("obstacle[{i}].shape"))?;
+/// Replaces the object's file by the mesh that was loaded from it.
+pub fn embed_object(description: &mut ObjectDescription, object: &ObjectModel) {
+    if let ObjectShape::Mesh(source) = &mut description.shape {
+        *source = in_memory(&object.mesh);
     }
-    embed_all(&mut alone.hand.palm, base, "hand.palm")?;
-    for (f, finger) in alone.hand.finger.iter_mut().enumerate() {
+}
+
+/// Loads the meshes of obstacles; files are looked for in `base`, errors name keys below `obstacle`.
+pub fn embed_obstacles(obstacles: &mut [ObstacleDescription], base: &Path) -> Result<(), WorldError> {
+    let embed = |(i, obstacle): (usize, &mut ObstacleDescription)| {
+        embed_shape(&mut obstacle.shape, base, &format!("obstacle[{i}].shape"))
+    };
+    obstacles.iter_mut().enumerate().try_for_each(embed)
+}
+
+/// Loads the meshes of palm and links; files are looked for in `base`, errors name keys of the hand's own file.
+pub fn embed_hand(hand: &mut HandDescription, base: &Path) -> Result<(), WorldError> {
+    embed_all(&mut hand.palm, base, "palm")?;
+    for (f, finger) in hand.finger.iter_mut().enumerate() {
         for (j, joint) in finger.joint.iter_mut().enumerate() {
-            embed_all(&mut joint.link, base, &format!("hand.finger[{f}].joint[{j}].link"))?;
+            embed_all(&mut joint.link, base, &format!("finger[{f}].joint[{j}].link"))?;
         }
     }
-    Ok(alone)
+    Ok(())
 }
 
 fn embed_all(shapes: &mut [PlacedShape], base: &Path, key: &str) -> Result<(), WorldError> {
@@ -31,7 +42,7 @@ fn embed_all(shapes: &mut [PlacedShape], base: &Path, key: &str) -> Result<(), W
 
 fn embed_shape(shape: &mut Shape, base: &Path, key: &str) -> Result<(), WorldError> {
     if let Shape::Mesh(source) = shape {
-        *source = embedded(source, base, key)?;
+        *source = in_memory(&load_mesh(source, base, key)?);
     }
     Ok(())
 }

@@ -3,7 +3,8 @@
 mod check;
 mod embed;
 
-pub use embed::embed_problem;
+pub use check::{check_problem, check_units};
+pub use embed::{embed_hand, embed_object, embed_obstacles};
 
 use crate::clearance::SceneClearance;
 use crate::error::WorldError;
@@ -12,9 +13,6 @@ use crate::object::load_object;
 use regrasp_api::{ObjectModel, Pose, Problem, Vec3};
 use std::path::Path;
 use std::sync::Arc;
-
-/// How far beyond start and goals the object may be sampled where the problem does not say (m).
-const WORKSPACE_MARGIN: f64 = 0.015;
 
 /// Everything that a problem describes, checked and prepared for planning.
 pub struct World {
@@ -41,33 +39,19 @@ impl World {
     ///
     /// Only what can be told without planning is checked: whether a given grasp holds, or a start collides, is not.
     pub fn new(problem: &Problem, base: &Path) -> Result<Self, WorldError> {
-        check::check_limits(&problem.limits)?;
-        let obstacle_names = check::obstacle_names(&problem.obstacle)?;
+        check_problem(problem)?;
         let hand = Arc::new(ChainHand::new(problem.hand.clone())?);
         let object = load_object(&problem.object, base)?;
-        check::check_units(&hand, &object, &problem.object.shape)?;
-        let (start, goals) = check::poses(problem)?;
-        check::check_grasps(problem)?;
+        check_units(&hand, &object, &problem.object.shape)?;
+        let mut poses = check::poses(problem)?;
+        let workspace = problem.sampling_box(&poses);
+        let start = poses.remove(0);
         let clear = problem.limits.tolerances.clearance + problem.limits.resolution.clearance;
         let clearance = SceneClearance::new(hand.clone(), &object, &problem.obstacle, clear, base)?;
-        let workspace = match &problem.workspace {
-            Some(given) => check::workspace(given)?,
-            None => around(&start, &goals),
-        };
-        let g_H = check::gravity(problem.gravity)?;
-        Ok(Self { hand, object, clearance, obstacle_names, start, goals, g_H, workspace })
+        let obstacle_names = check::obstacle_names(&problem.obstacle)?;
+        let g_H = problem.gravity.into();
+        Ok(Self { hand, object, clearance, obstacle_names, start, goals: poses, g_H, workspace })
     }
-}
-
-/// A box about the positions of start and goals.
-fn around(start: &Pose, goals: &[Pose]) -> (Vec3, Vec3) {
-    let margin = Vec3::repeat(WORKSPACE_MARGIN);
-    let first = start.translation.vector;
-    let (lower, upper) = goals
-        .iter()
-        .map(|goal| goal.translation.vector)
-        .fold((first, first), |(lower, upper), p| (lower.inf(&p), upper.sup(&p)));
-    (lower - margin, upper + margin)
 }
 
 #[cfg(test)]

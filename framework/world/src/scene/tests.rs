@@ -80,8 +80,9 @@ fn every_fault_is_refused_by_its_key() {
         (refusal(|p| p.object.shape = ball(30.0)), "lengths multiplied by 0.001"),
         (refusal(|p| p.object.shape = ball(30e-6)), "lengths multiplied by 1000"),
         (refusal(|p| p.start.pose.position[2] = f64::NAN), "`start.pose`"),
-        (refusal(|p| p.goal.clear()), "`goal`: at least one"),
-        (refusal(|p| p.goal.push(p.goal[0].clone())), "`goal[1]`: it coincides with `goal[0]`"),
+        (refusal(|p| p.goal.clear()), "`goal`: there is no goal"),
+        (refusal(|p| p.goal.push(p.goal[0].clone())), "`goal[1]` coincides with `goal[0]`"),
+        (refusal(|p| p.goal[0].pose = p.start.pose.clone()), "`goal[0]` coincides with the start"),
         (refusal(|p| p.goal[0].grasp = grasp(3)), "`goal[0].grasp`: 3 entries"),
         (refusal(|p| p.start.grasp = grasp(4)), "`start.grasp[0].joints`"),
         (refusal(|p| p.gravity[1] = f64::NAN), "`gravity[1]` = NaN"),
@@ -130,9 +131,16 @@ fn a_mesh_in_millimetres_is_refused_with_the_scale_to_use_and_stands_alone_when_
     problem.obstacle[0].shape = Shape::Mesh(scaled.clone());
     problem.hand.palm.push(PlacedShape { shape: Shape::Mesh(scaled.clone()), pose: pose([0.0, 0.0, -0.1]) });
     problem.hand.finger[0].joint[1].link[0].shape = Shape::Mesh(MeshSource { scale: Some(0.0002), ..scaled });
-    let alone = embed_problem(&problem, folder.path()).unwrap();
+    let mut alone = problem.clone();
+    embed_object(&mut alone.object, &load_object(&problem.object, folder.path()).unwrap());
+    embed_obstacles(&mut alone.obstacle, folder.path()).unwrap();
+    embed_hand(&mut alone.hand, folder.path()).unwrap();
+    let nowhere = Path::new("/nowhere");
     let (from_files, from_plan) =
-        (World::new(&problem, folder.path()).unwrap(), World::new(&alone, Path::new("/nowhere")).unwrap());
+        (World::new(&problem, folder.path()).unwrap(), World::new(&alone, nowhere).unwrap());
     assert_eq!(from_files.object.mesh, from_plan.object.mesh);
-    assert_eq!(embed_problem(&alone, Path::new("/nowhere")).unwrap(), alone);
+    let mut again = alone.clone();
+    embed_hand(&mut again.hand, nowhere).unwrap();
+    embed_obstacles(&mut again.obstacle, nowhere).unwrap();
+    assert_eq!(again, alone);
 }
