@@ -195,3 +195,7 @@ fn joint(axis: &Axis, from_parent: &Vec3) -> GenericJoint {
         .contacts_enabled(false)
         .build()
 }
+
+#[cfg(test)]
+#[path = "finger_tests.rs"]
+mod tests;

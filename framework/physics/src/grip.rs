@@ -47,15 +47,18 @@ pub(crate) struct Grip {
 /// Weight of the squared forces (1/N) against the margin: small enough to leave the margin nearly best, large enough to make
 /// the forces unique and continuous along a motion.
 const REGULARISATION: f64 = 1e-3;
+/// Most normal force (N) where only the joints' efforts bound it.
+const UNBOUNDED: f64 = 1e3;
 /// Length (m) by which rows of torque are divided, so that they compare with forces.
 const LENGTH: f64 = 0.03;
 
-/// Maximises t - ε/2 |f|² over the forces f with μ f_n - |f_t| ≥ t at each contact, Σ f = -`load_f`, Σ r × f = 0, f_n ≤ `most` and
-/// joint efforts |Jᵀ f| within theirs; `None` where no forces do, or only with t ≤ 0.
+/// Maximises t - ε/2 |f|² over the forces f with μ f_n - |f_t| ≥ t at each contact, Σ f = -`load_f`, Σ r × f = 0, f_n ≤ `most` (if given) and
+/// joint efforts |Jᵀ f| within theirs; `None` where no forces do. A margin of 0 or less
+/// says that none do so inside the cones.
 ///
 /// In the manner of Boyd and Wegbreit, "Fast computation of optimal contact forces", T-RO 2007; solved by Clarabel (Goulart and Chen,
 /// "Clarabel: an interior-point solver for conic programs with quadratic objectives", 2024).
-pub(crate) fn best_grip(contacts: &[GripContact], mu: f64, load: &Vec3, most: f64) -> Option<Grip> {
+pub(crate) fn best_grip(contacts: &[GripContact], mu: f64, load: &Vec3, most: Option<f64>) -> Option<Grip> {
     let mut program = Program::new(3 * contacts.len() + 1);
     let bases: Vec<[Vec3; 3]> = contacts.iter().map(|contact| basis(&contact.n)).collect();
     program.balance(contacts, &bases, load);
@@ -65,7 +68,7 @@ pub(crate) fn best_grip(contacts: &[GripContact], mu: f64, load: &Vec3, most: f6
     let force = |(i, basis): (usize, &[Vec3; 3])| (0..3).map(|k| basis[k] * x[3 * i + k]).sum();
     let forces: Vec<Vec3> = bases.iter().enumerate().map(force).collect();
     let margin = margin(contacts, &forces, mu);
-    (margin > 0.0).then_some(Grip { forces, margin })
+    margin.is_finite().then_some(Grip { forces, margin })
 }
 
 /// The smallest distance of a force from its cone's boundary (N).
@@ -151,11 +154,12 @@ impl Program {
     }
 
     /// f_n ≤ most; ±Jᵀf ≤ effort.
-    fn bounds(&mut self, contacts: &[GripContact], bases: &[[Vec3; 3]], most: f64) {
+    fn bounds(&mut self, contacts: &[GripContact], bases: &[[Vec3; 3]], most: Option<f64>) {
         let first = self.b.len();
         for (i, (contact, basis)) in contacts.iter().zip(bases).enumerate() {
+            // A program whose forces nothing bounds would have no best answer.
             self.set(self.b.len(), 3 * i, 1.0);
-            self.b.push(most);
+            self.b.push(most.unwrap_or(UNBOUNDED));
             for (column, &effort) in contact.columns.iter().zip(&contact.efforts) {
                 for sign in [1.0, -1.0] {
                     let row = self.b.len();
@@ -218,7 +222,7 @@ mod tests {
     #[test]
     fn a_ring_of_contacts_shares_the_weight_and_takes_the_best_margin() {
         let weight = Vec3::new(0.0, 0.0, -1.0);
-        let grip = best_grip(&ring(), 0.5, &weight, 3.0).unwrap();
+        let grip = best_grip(&ring(), 0.5, &weight, Some(3.0)).unwrap();
         let sum: Vec3 = grip.forces.iter().sum();
         assert!((sum + weight).norm() < 1e-6);
         // By symmetry each carries a quarter; the normal force is at its bound: 0.5 · 3 - 0.25.
@@ -249,13 +253,16 @@ mod tests {
             contact.columns = vec![-contact.n * 0.1];
             contact.efforts = vec![0.2];
         }
-        let grip = best_grip(&contacts, 0.5, &Vec3::new(0.0, 0.0, -1.0), 3.0).unwrap();
+        let grip = best_grip(&contacts, 0.5, &Vec3::new(0.0, 0.0, -1.0), Some(3.0)).unwrap();
         assert!((grip.margin - 0.75).abs() < 1e-3, "{}", grip.margin);
     }
 
     #[test]
     fn too_heavy_or_not_closed_has_no_grip() {
-        assert!(best_grip(&ring(), 0.5, &Vec3::new(0.0, 0.0, -7.0), 3.0).is_none());
-        assert!(best_grip(&ring()[..2], 0.5, &Vec3::new(0.0, 0.0, -0.1), 3.0).is_none());
+        let heavy = best_grip(&ring(), 0.5, &Vec3::new(0.0, 0.0, -7.0), Some(3.0)).unwrap();
+        // Each carries 7/4 N, and 0.5 · 3 N is what friction gives.
+        assert!((heavy.margin + 0.25).abs() < 1e-3, "{}", heavy.margin);
+        let two = best_grip(&ring()[..2], 0.5, &Vec3::new(0.0, 0.0, -0.1), Some(3.0));
+        assert!(two.is_none_or(|grip| grip.margin <= 1e-6));
     }
 }

@@ -43,15 +43,19 @@ impl<'a> Holder<'a> {
         Self { hand, object, weight, mu, most, share: settings.effort_share, last: None }
     }
 
-    /// The joints' efforts (N·m; N) with which the fingers of `holding` hold the object at `q`; `None` where no forces within the cones and the
-    /// efforts hold it.
-    pub fn efforts(&mut self, q: &Configuration, holding: FingerSet) -> Option<PerFinger<FingerJoints>> {
+    /// The joints' efforts (N·m; N) with which the fingers of `holding` hold the object at `q`, and their margin (N): 0 or less where no forces
+    /// within the cones and the efforts hold it. `None` where no forces of any direction do.
+    pub fn efforts(
+        &mut self,
+        q: &Configuration,
+        holding: FingerSet,
+    ) -> Option<(PerFinger<FingerJoints>, f64)> {
         let contacts = self.contacts(q, holding);
         let carried = self.last.take().and_then(|last| self.carry(last, &contacts));
         let (grip, margin) = match carried {
             Some(carried) => carried,
             None => {
-                let grip = best_grip(&contacts, self.mu, &self.weight, self.most)?;
+                let grip = self.solve(&contacts)?;
                 let margin = grip.margin;
                 (grip, margin)
             }
@@ -63,8 +67,20 @@ impl<'a> Holder<'a> {
         for (contact, force) in contacts.iter().zip(&grip.forces) {
             efforts[contact.finger] = contact.efforts_of(force);
         }
+        let now = grip.margin;
         self.last = Some(Solved { contacts, grip, margin });
-        Some(efforts)
+        Some((efforts, now))
+    }
+
+    /// The best grip within the bounds wished for; where none is inside the cones, the best that the joints' whole efforts allow.
+    fn solve(&self, contacts: &[GripContact]) -> Option<Grip> {
+        let wished = best_grip(contacts, self.mu, &self.weight, Some(self.most));
+        if wished.as_ref().is_some_and(|grip| grip.margin > 0.0) {
+            return wished;
+        }
+        let mut contacts = contacts.to_vec();
+        contacts.iter_mut().flat_map(|contact| &mut contact.efforts).for_each(|effort| *effort /= self.share);
+        best_grip(&contacts, self.mu, &self.weight, None)
     }
 
     fn carry(&self, last: Solved, contacts: &[GripContact]) -> Option<(Grip, f64)> {
@@ -82,6 +98,9 @@ impl<'a> Holder<'a> {
             .zip(&mut forces)
             .for_each(|(change, force)| *force -= change);
         let margin = margin(contacts, &forces, self.mu);
+        if last.margin <= 0.0 {
+            return None;
+        }
         let bounded = contacts.iter().zip(&forces).all(|(contact, force)| contact.allows(force, self.most));
         (bounded && margin >= KEPT * last.margin).then_some((Grip { forces, margin }, last.margin))
     }

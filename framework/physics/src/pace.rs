@@ -52,3 +52,27 @@ fn ramped(time: f64, total: f64, ramp: f64) -> f64 {
         time + half
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_motion_starts_and_stops_at_rest_and_keeps_its_speed_in_between() {
+        let (total, ramp) = (1.0, 0.2);
+        let at = |time: f64| ramped(time, total, ramp);
+        assert_eq!((at(0.0), at(total)), (0.0, total + ramp));
+        // In between as fast as before, and half a ramp later.
+        assert!((at(0.5) - 0.6).abs() < 1e-12 && (at(0.6) - at(0.5) - 0.1).abs() < 1e-12);
+        // Constant acceleration 1/ramp: after the time t it has come t² / 2 ramp far.
+        assert!((at(0.1 * 0.1 / (2.0 * ramp)) - 0.1).abs() < 1e-12);
+        assert!((1..=1000).all(|i| at(f64::from(i) * 1e-3) > at(f64::from(i - 1) * 1e-3)));
+    }
+
+    #[test]
+    fn a_short_motion_is_all_ramp() {
+        assert!((ramped(0.05, 0.1, 0.1) - 0.1).abs() < 1e-12);
+        assert_eq!(ramped(0.1, 0.1, 0.1), 0.2);
+        assert_eq!(ramped(0.0, 0.0, 0.0), 0.0);
+    }
+}

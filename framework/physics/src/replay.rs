@@ -54,6 +54,9 @@ pub struct StageReport {
     pub moving: Option<FingerIndex>,
     /// Worst values and, if the replay ended here, why. A contact that loses the object is reported with a gap of 1 mm at most.
     pub outcome: Outcome,
+    /// The least distance of a planned force from its cone's boundary (N). Where it is not positive, no forces within the cones and the joints' efforts
+    /// hold the object against gravity: a closed grasp may need forces that the fingers do not have. The nearest ones are tried.
+    pub margin: f64,
     /// Distance of the object's origin from its planned place at the stage's end (m).
     pub end_distance: f64,
     /// Angle of the object from its planned orientation at the stage's end (rad).
@@ -143,7 +146,7 @@ struct Run<'a> {
 impl Run<'_> {
     fn stage(&mut self, stage: &Stage<'_>, is_last: bool) -> StageReport {
         let mut outcome = Outcome::new(self.scene.hand.finger_count());
-        let (knots, complete) = self.knots(stage, is_last);
+        let (knots, margin) = self.knots(stage, is_last);
         if let Some(first) = knots.first() {
             let (scene, settings) = (&self.scene, &self.settings.simulation);
             let simulator = self.simulator.get_or_insert_with(|| Simulator::new(scene, settings, first));
@@ -151,29 +154,30 @@ impl Run<'_> {
             self.last = knots.last().cloned();
             self.clock = self.last.as_ref().map_or(self.clock, |knot| knot.time);
         }
-        if !complete && outcome.is_good() {
+        if knots.len() <= stage.states.len() && outcome.is_good() {
             let failure =
                 Failure { what: Happening::NoGrip, time: self.clock, state: knots.len().saturating_sub(1) };
             outcome.failure = Some(failure);
         }
         let (end_distance, end_angle) = self.off(stage);
-        StageReport { moving: stage.moving, outcome, end_distance, end_angle }
+        StageReport { moving: stage.moving, outcome, margin, end_distance, end_angle }
     }
 
-    /// The stage's schedule, forces passing over first; and whether it is complete.
-    fn knots(&mut self, stage: &Stage<'_>, is_last: bool) -> (Vec<Knot>, bool) {
+    /// The stage's schedule, forces passing over first, up to where no forces hold the object; and the least margin of a grip (N).
+    fn knots(&mut self, stage: &Stage<'_>, is_last: bool) -> (Vec<Knot>, f64) {
         let Scene { hand, object, g_H, .. } = self.scene;
         let mut holder = Holder::new((hand, object, g_H), self.mu, &self.settings.simulation);
         let start = self.clock + self.settings.shift;
         let first = stage.times.first().copied().unwrap_or(0.0);
+        let mut least = f64::INFINITY;
         let made = stage.states.iter().zip(stage.times).map_while(|(q, time)| {
             let holding = stage.moving.map_or(q.holding(), |finger| q.holding().without(finger));
-            let feed = holder.efforts(q, holding)?;
+            let (feed, margin) = holder.efforts(q, holding)?;
+            least = least.min(margin);
             let time = start + (time - first) * self.settings.slowdown;
             Some(Knot { time, X_HO: q.X_HO, joints: q.joints, feed, holding })
         });
         let mut knots: Vec<Knot> = made.collect();
-        let complete = knots.len() == stage.states.len();
         if let Some(first) = knots.first() {
             let before = self.last.as_ref().unwrap_or(first);
             let holding = before.holding.intersection(first.holding);
@@ -183,7 +187,7 @@ impl Run<'_> {
         if let (true, Some(last)) = (is_last, knots.last()) {
             knots.push(Knot { time: last.time + self.settings.shift, ..last.clone() });
         }
-        (knots, complete)
+        (knots, least)
     }
 
     /// How far the object is from where the stage is to end: distance (m) and angle (rad).

@@ -39,7 +39,10 @@ impl TransferSimulator {
         let mut holder = Holder::new((hand, object, g_H), mu, &self.settings);
         let times = pace.times(hand, states);
         let knot = |(q, &time): (&Configuration, &f64)| {
-            let feed = holder.efforts(q, q.holding())?;
+            let (feed, margin) = holder.efforts(q, q.holding())?;
+            if margin <= 0.0 {
+                return None;
+            }
             Some(Knot { time, X_HO: q.X_HO, joints: q.joints, feed, holding: q.holding() })
         };
         let mut knots: Vec<Knot> = states.iter().zip(&times).map_while(knot).collect();
