@@ -1,4 +1,5 @@
-//! Cost of one stability question: exact force closure cold and warm, which fingers may be lifted, the conic reference.
+//! Cost of one stability question: exact force closure cold and warm, which fingers may be lifted, cones of edges, the wrench ball,
+//! equilibrium, the conic reference.
 //!
 //! Each figure is the mean over a fixed set of grasps of a size of a few centimetres, about half of them closed.
 
@@ -6,7 +7,10 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use regrasp_api::{
     Cone, Context, FingerIndex, Grasp, GraspContact, Hint, Random, StabilityTest, Uninterrupted, Vec3,
 };
-use regrasp_stability_tests::{ForceClosure, ForceClosureSettings, Socp, SocpSettings};
+use regrasp_stability_tests::{
+    Equilibrium, EquilibriumSettings, ForceClosure, ForceClosureSettings, Linearised, LinearisedSettings,
+    Socp, SocpSettings, WrenchBall, WrenchBallSettings,
+};
 use std::hint::black_box;
 
 const SET: usize = 512;
@@ -97,6 +101,43 @@ fn force_closure(c: &mut Criterion) {
     });
 }
 
+fn linearised(c: &mut Criterion) {
+    for edges in [4, 8, 16, 64] {
+        let test = Linearised::new(LinearisedSettings { edges }).expect("in range");
+        verdicts(c, &format!("linearised, {edges} edges, 4 PCWF"), &test, &grasps(4, 0.8, 0.0), false);
+    }
+    let test = Linearised::new(LinearisedSettings::default()).expect("defaults are in range");
+    verdicts(c, "linearised, 8 edges, 4 soft fingers", &test, &grasps(4, 0.8, 0.002), false);
+}
+
+fn wrench_ball(c: &mut Criterion) {
+    let four = grasps(4, 0.8, 0.0);
+    for least_margin in [0.0, 0.01, 0.1, 0.3] {
+        let settings = WrenchBallSettings { least_margin, ..WrenchBallSettings::default() };
+        let test = WrenchBall::new(settings, Vec3::zeros()).expect("in range");
+        verdicts(c, &format!("wrench-ball above {least_margin}, 4 PCWF"), &test, &four, false);
+    }
+    let test = WrenchBall::new(WrenchBallSettings::default(), Vec3::zeros()).expect("defaults are in range");
+    let (mut context, mut next) = (context(), 0);
+    c.bench_function("wrench-ball, assess, 4 PCWF", |bencher| {
+        bencher.iter(|| {
+            next = (next + 1) % SET;
+            test.assess(black_box(&four[next]), None, None, &mut context)
+        });
+    });
+}
+
+/// Under gravity along some axis of the object.
+fn equilibrium(c: &mut Criterion) {
+    let test =
+        Equilibrium::new(EquilibriumSettings::default(), 0.1, Vec3::zeros()).expect("defaults are in range");
+    for count in [3, 4] {
+        let mut set = grasps(count, 0.8, 0.0);
+        set.iter_mut().for_each(|grasp| grasp.g_O = Vec3::new(0.0, 0.0, -9.81));
+        verdicts(c, &format!("equilibrium, {count} PCWF"), &test, &set, false);
+    }
+}
+
 fn reference(c: &mut Criterion) {
     let test = Socp::new(SocpSettings::default()).expect("defaults are in range");
     verdicts(c, "socp, 4 PCWF", &test, &grasps(4, 0.8, 0.0), false);
@@ -105,6 +146,6 @@ fn reference(c: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(30).measurement_time(std::time::Duration::from_secs(1)).warm_up_time(std::time::Duration::from_millis(300));
-    targets = force_closure, reference
+    targets = force_closure, linearised, wrench_ball, equilibrium, reference
 }
 criterion_main!(benches);

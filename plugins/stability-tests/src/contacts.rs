@@ -77,6 +77,20 @@ impl ScaledContact {
     }
 }
 
+/// The three contacts of `grasp` except that of `lifted`, inward normals, neither centred nor scaled; `None` if there are not three with
+/// elliptic cones.
+pub(crate) fn three_of(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Option<[ScaledContact; 3]> {
+    let mut left = grasp.contacts().iter().filter(|contact| Some(contact.finger) != lifted);
+    let mut next = || match left.next() {
+        Some(GraspContact { p_OC, n_O, cone: Cone::Elliptic { mu, gamma }, .. }) => {
+            Some(ScaledContact { r: *p_OC, n: -n_O, mu: *mu, gamma: *gamma })
+        }
+        _ => None,
+    };
+    let three = [next()?, next()?, next()?];
+    left.next().is_none().then_some(three)
+}
+
 /// Contacts closer together than this share of their distance from O's origin are one point: their differences are rounding.
 const COINCIDENT: f64 = 1e-9;
 

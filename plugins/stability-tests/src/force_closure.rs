@@ -1,7 +1,7 @@
 //! `stability-test/force-closure`: exact force closure with elliptic cones.
 
 use crate::closure::{Frame, Outcome, Search, bracket, three_points};
-use crate::contacts::{ScaledGrasp, Twist};
+use crate::contacts::{ScaledGrasp, Twist, three_of};
 use regrasp_api::{
     Assessment, Build, CallError, Certificate, Context, Entry, FingerIndex, Grasp, Hint, Settings,
     SettingsError, Slot, Stability, StabilityTest, Vec3, check_range, check_settings,
@@ -64,13 +64,36 @@ impl ForceClosure {
         self.tau
     }
 
+    /// The verdict on `grasp` without `lifted`; `plugin` is named where a cone is not elliptic.
+    pub(crate) fn judge(
+        &self,
+        grasp: &Grasp<'_>,
+        lifted: Option<FingerIndex>,
+        hint: &mut Hint,
+        plugin: &'static str,
+    ) -> Result<Stability, CallError> {
+        // Three points need neither centre nor scale.
+        let in_closed_form = three_of(grasp, lifted).and_then(|contacts| three_points(&contacts));
+        if let Some(closed) = in_closed_form {
+            return Ok(if closed { Stability::Stable } else { Stability::Unstable });
+        }
+        Ok(self.search(&ScaledGrasp::gather(grasp, lifted, plugin)?, hint))
+    }
+
+    /// The same for contacts that were gathered already.
     pub(crate) fn decide(&self, grasp: &ScaledGrasp, hint: &mut Hint) -> Stability {
+        if let Ok(contacts) = grasp.contacts().try_into()
+            && let Some(closed) = three_points(contacts)
+        {
+            return if closed { Stability::Stable } else { Stability::Unstable };
+        }
+        self.search(grasp, hint)
+    }
+
+    fn search(&self, grasp: &ScaledGrasp, hint: &mut Hint) -> Stability {
         // Balance alone takes six independent components.
         if grasp.components() <= 6 {
             return Stability::Unstable;
-        }
-        if let Some(closed) = three_points(grasp) {
-            return if closed { Stability::Stable } else { Stability::Unstable };
         }
         let search = Search::new(grasp, self.tau);
         recall(&search, hint).unwrap_or_else(|| remember(search.run(), hint))
@@ -104,7 +127,7 @@ impl StabilityTest for ForceClosure {
         context: &mut Context<'_>,
     ) -> Result<Stability, CallError> {
         context.count_call(Slot::StabilityTest);
-        Ok(self.decide(&ScaledGrasp::gather(grasp, None, ID)?, hint))
+        self.judge(grasp, None, hint, ID)
     }
 
     fn assess(
@@ -128,8 +151,7 @@ impl StabilityTest for ForceClosure {
         context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
         context.count_call(Slot::StabilityTest);
-        let rest = ScaledGrasp::gather(grasp, Some(finger), ID)?;
-        Ok(self.decide(&rest, &mut Hint::default()).is_stable())
+        Ok(self.judge(grasp, Some(finger), &mut Hint::default(), ID)?.is_stable())
     }
 }
 

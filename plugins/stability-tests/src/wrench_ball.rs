@@ -1,14 +1,15 @@
 //! `stability-test/wrench-ball`: the largest ball of wrenches that the grasp resists.
 
-use crate::closure::{Frame, Search, glance};
+use crate::closure::{Frame, Search, floor, glance};
 use crate::force_closure::{ForceClosure, ForceClosureSettings};
 use crate::hull::Until;
 use crate::linearised::{hull_depth, proof, verdict};
 use crate::spanning::span;
 use crate::wrenches::{MAX_EDGES, MIN_EDGES, Ring, WrenchSet};
 use regrasp_api::{
-    Assessment, Build, BuildError, CallError, Certificate, Context, Entry, FingerIndex, Grasp, Hint,
-    Settings, SettingsError, Slot, Stability, StabilityTest, Vec3, check_count, check_range, check_settings,
+    Assessment, Build, BuildError, CallError, Certificate, Cone, Context, Entry, FingerIndex, Grasp,
+    GraspContact, Hint, Settings, SettingsError, Slot, Stability, StabilityTest, Vec3, check_count,
+    check_range, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -121,11 +122,31 @@ impl WrenchBall {
         self.is_deep(set)
     }
 
+    /// The verdict on `grasp` without `lifted`.
+    fn judge(
+        &self,
+        grasp: &Grasp<'_>,
+        lifted: Option<FingerIndex>,
+        hint: &mut Hint,
+    ) -> Result<Stability, CallError> {
+        let round = |contact: &GraspContact<'_>| matches!(contact.cone, Cone::Elliptic { .. });
+        // Where closure is all that is asked, round cones need no set of wrenches.
+        let closure_only = self.ring.is_none() && self.settings.least_margin <= 0.0;
+        if closure_only && grasp.contacts().iter().all(round) {
+            return self.closure.judge(grasp, lifted, hint, ID);
+        }
+        Ok(self.decide(&self.gather(grasp, lifted), hint))
+    }
+
     /// Whether a closed grasp's margin exceeds the least one.
     fn is_deep(&self, set: &WrenchSet<'_>) -> Stability {
         let (least, frame) = (self.settings.least_margin, self.frame(set));
         if self.is_round(set) {
-            let (lower, upper) = glance(&Search::new(&set.grasp, self.closure.undecided_margin()), &frame);
+            let search = Search::new(&set.grasp, self.closure.undecided_margin());
+            if floor(&search, &frame) > least {
+                return Stability::Stable;
+            }
+            let (lower, upper) = glance(&search, &frame);
             if lower > least {
                 return Stability::Stable;
             }
@@ -162,7 +183,7 @@ impl StabilityTest for WrenchBall {
         context: &mut Context<'_>,
     ) -> Result<Stability, CallError> {
         context.count_call(Slot::StabilityTest);
-        Ok(self.decide(&self.gather(grasp, None), hint))
+        self.judge(grasp, None, hint)
     }
 
     fn assess(
@@ -195,7 +216,7 @@ impl StabilityTest for WrenchBall {
         context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
         context.count_call(Slot::StabilityTest);
-        Ok(self.decide(&self.gather(grasp, Some(finger)), &mut Hint::default()).is_stable())
+        Ok(self.judge(grasp, Some(finger), &mut Hint::default())?.is_stable())
     }
 }
 

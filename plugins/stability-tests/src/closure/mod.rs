@@ -6,7 +6,7 @@ mod polar;
 mod symmetric;
 mod triangle;
 
-pub(crate) use margin::{Frame, bracket, glance};
+pub(crate) use margin::{Frame, bracket, floor, glance};
 pub(crate) use newton::{Outcome, Search};
 pub(crate) use polar::PolarBody;
 pub(crate) use symmetric::{Factor, Symmetric6};

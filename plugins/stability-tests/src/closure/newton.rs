@@ -83,7 +83,7 @@ impl<'a> Search<'a> {
         }
         let here = self.body.at(&Twist::ZERO);
         let along = self.body.along(&here, &d);
-        if !sound && thin.is_none() && self.forces_hold(&here, &along, &factor, 0.0) {
+        if !sound && thin.is_none() && self.forces_hold(&here, &along, &factor) {
             return Outcome::Closed(Twist::ZERO);
         }
         match self.body.best_step(&here, &along, 0.0) {
@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
         }
         let d = Twist::from_array(factor.solve(g));
         let along = self.body.along(&here, &d);
-        if thin.is_none() && self.forces_hold(&here, &along, grasp_map, 0.0) {
+        if thin.is_none() && self.forces_hold(&here, &along, grasp_map) {
             return Err(Outcome::Closed(*w));
         }
         if self.body.separates(&d) {
@@ -226,11 +226,23 @@ impl<'a> Search<'a> {
         slack >= SLACK * magnitude
     }
 
-    /// Whether the multipliers of a step prove closure with a certified margin above `margin`.
+    /// Whether the multipliers of a step prove closure.
     ///
     /// The margin: pushing every force by at most slack/√2 keeps it in its cone, so Q1 ≥ slack σ_min(G) / (√2 (1 + 1/√2) Σ f_n).
     #[inline]
-    fn forces_hold(&self, here: &Locals, along: &Locals, grasp_map: &Factor, margin: f64) -> bool {
+    fn forces_hold(&self, here: &Locals, along: &Locals, grasp_map: &Factor) -> bool {
+        self.forces_hold_at(here, along, || grasp_map.trace_of_inverse(), 0.0)
+    }
+
+    /// The same with a certified margin above `margin`, given (a bound of) tr M⁻¹.
+    #[inline]
+    fn forces_hold_at(
+        &self,
+        here: &Locals,
+        along: &Locals,
+        trace: impl FnOnce() -> f64,
+        margin: f64,
+    ) -> bool {
         let (mut slack, mut magnitude, mut normal_sum) = (f64::INFINITY, 0.0_f64, 0.0);
         for ((contact, here), along) in self.body.grasp.contacts().iter().zip(here).zip(along) {
             let force = Multiplier::new(contact, here, along);
@@ -242,7 +254,7 @@ impl<'a> Search<'a> {
             return false;
         }
         let residual = self.residual(here, along);
-        let trace = grasp_map.trace_of_inverse();
+        let trace = trace();
         residual.dot(&residual) * trace <= 0.25 * slack * slack
             && (0.41 * slack).powi(2) > (margin * normal_sum).powi(2) * trace
     }
@@ -259,6 +271,9 @@ impl<'a> Search<'a> {
     }
 
     /// Whether the hint `w`, from a grasp nearby, proves closure with a margin that any search would see.
+    ///
+    /// The grasp map's square M is not needed: every contact's part of the Hessian H is at most 2 (s0 + |u|)²/q² times its part of M, u its
+    /// tangential and torsional part, so tr M⁻¹ is at most the largest of those times tr H⁻¹.
     pub fn closed_from(&self, w: &Twist) -> bool {
         let gauge = self.body.gauge(w);
         if gauge.is_nan() || gauge <= 0.0 {
@@ -269,8 +284,10 @@ impl<'a> Search<'a> {
         let (H, g) = self.body.newton_system(&here);
         let factor = H.factor(self.tau * self.tau);
         let along = self.body.along(&here, &Twist::from_array(factor.solve(g)));
-        let grasp_map = self.body.grasp_map_square().0.factor(0.5 * self.tau * self.tau);
-        grasp_map.smallest >= SOUND && self.forces_hold(&here, &along, &grasp_map, 10.0 * self.tau)
+        let stiffest =
+            here[..self.body.grasp.contacts().len()].iter().map(Local::stiffness).fold(0.0, f64::max);
+        factor.smallest >= SOUND * stiffest
+            && self.forces_hold_at(&here, &along, || stiffest * factor.trace_of_inverse(), 10.0 * self.tau)
     }
 
     /// Whether the hint `d`, from a grasp nearby, separates this one with a margin that any search would see.

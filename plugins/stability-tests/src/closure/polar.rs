@@ -40,6 +40,14 @@ impl Local {
     }
 }
 
+impl Local {
+    /// The largest eigenvalue of the barrier's Hessian at a point, over (v_n, μ v_t, γ β): 2/(s0 - |u|)² = 2 (s0 + |u|)²/q², at most 8 s0²/q².
+    #[inline]
+    pub fn stiffness(&self) -> f64 {
+        8.0 * (self.s0 / self.q).powi(2)
+    }
+}
+
 /// One value of [`Local`] for each contact.
 pub(crate) type Locals = [Local; MAX_FINGERS];
 

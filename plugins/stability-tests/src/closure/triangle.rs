@@ -5,7 +5,7 @@
 //! strict inequalities in (a01, a02, a12). After Nguyen, "Constructing force-closure grasps", IJRR 1988, and Li, Liu, Cai, "On computing
 //! three-finger force-closure grasps of 2-D and 3-D objects", T-RA 2003; the enumeration of rays is ours.
 
-use crate::contacts::{ScaledContact, ScaledGrasp};
+use crate::contacts::ScaledContact;
 use regrasp_api::Vec3;
 
 /// Conditions that hold by less than this are left to the general test, which finds a proof for its verdict.
@@ -13,17 +13,24 @@ const COMFORT: f64 = 1e-3;
 /// Conditions that fail by less than this are left to it too.
 const CLEAR: f64 = 1e-6;
 
+/// Triangles farther from the origin than this times their size are left to the general test, which centres them.
+const FAR: f64 = 1e6;
+/// Least area (twice) of a triangle over the square of its longest side; a regular one has 0.87.
+const SHAPELY: f64 = 0.005;
+
 /// Whether three point contacts with friction are force closure; `None` near the boundary and for other grasps.
-pub(crate) fn three_points(grasp: &ScaledGrasp) -> Option<bool> {
-    let [c0, c1, c2] = grasp.contacts() else { return None };
-    if [c0, c1, c2].iter().any(|c| c.mu <= 0.0 || c.gamma > 0.0) {
+///
+/// The contacts may be given in any unit of length and about any point not far away.
+pub(crate) fn three_points(contacts: &[ScaledContact; 3]) -> Option<bool> {
+    let [c0, c1, c2] = contacts;
+    if contacts.iter().any(|c| c.mu <= 0.0 || c.gamma > 0.0) {
         return None;
     }
     let (u01, u02, u12) = (c1.r - c0.r, c2.r - c0.r, c2.r - c1.r);
     let normal = u01.cross(&u02);
     let area = normal.norm();
-    // Scaled to a largest distance of 1 from the centroid, a well-shaped triangle has an area of about 2.
-    if area < 0.01 {
+    let longest = larger(larger(u01.norm_squared(), u02.norm_squared()), u12.norm_squared());
+    if area <= SHAPELY * longest || c0.r.norm_squared() > FAR * FAR * longest {
         return None;
     }
     let m = normal / area;
@@ -41,6 +48,12 @@ pub(crate) fn three_points(grasp: &ScaledGrasp) -> Option<bool> {
         }
     }
     feasible(&conditions)
+}
+
+/// The larger of two numbers that are not NaN, in one instruction.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// The plane's section of a cone.
@@ -80,39 +93,83 @@ fn in_edges(vertex: usize, first: f64, second: f64) -> Vec3 {
 ///
 /// The cone {w·a ≥ 0} is spanned by its extreme rays, each the cross product of two w; the sum of those is inside if anything is.
 fn feasible(w: &[Vec3; 6]) -> Option<bool> {
-    let mut inside = Vec3::zeros();
-    let mut clear = true;
-    for i in 0..6 {
-        for j in i + 1..6 {
-            let ray = w[i].cross(&w[j]);
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            for (k, w_k) in w.iter().enumerate() {
-                if k != i && k != j {
-                    let d = ray.dot(w_k);
-                    low = low.min(d);
-                    high = high.max(d);
-                }
-            }
-            if low >= 0.0 {
-                inside += ray;
-            } else if high <= 0.0 {
-                inside -= ray;
-            }
-            clear &= low < -CLEAR && high > CLEAR;
-        }
+    let mut rays = Rays { inside: Vec3::zeros(), clear: true };
+    // The pair at vertex k leaves out coordinate 2 - k, so every product has zeros that need no multiplication.
+    for vertex in 0..3 {
+        let (i, j) = (2 * vertex, 2 * vertex + 1);
+        let mut ray = Vec3::zeros();
+        let (a, b) = COORDINATES[vertex];
+        let size = w[i][a] * w[j][b] - w[i][b] * w[j][a];
+        // The sign of e_a × e_b is that of the missing axis, but for vertex 1, where (x, z) turns the other way round.
+        ray[2 - vertex] = if vertex == 1 { -size } else { size };
+        rays.take(w, ray, i, j);
     }
-    if clear {
+    for (i, j) in [(0, 2), (0, 3), (1, 2), (1, 3)] {
+        let (p, q, u, v) = (w[i].x, w[i].y, w[j].x, w[j].z);
+        rays.take(w, Vec3::new(q * v, -p * v, -q * u), i, j);
+    }
+    for (i, j) in [(0, 4), (0, 5), (1, 4), (1, 5)] {
+        let (p, q, u, v) = (w[i].x, w[i].y, w[j].y, w[j].z);
+        rays.take(w, Vec3::new(q * v, -p * v, p * u), i, j);
+    }
+    for (i, j) in [(2, 4), (2, 5), (3, 4), (3, 5)] {
+        let (p, q, u, v) = (w[i].x, w[i].z, w[j].y, w[j].z);
+        rays.take(w, Vec3::new(-q * u, -p * v, p * u), i, j);
+    }
+    if rays.clear {
         return Some(false);
     }
-    let bound = COMFORT * inside.norm();
-    (bound > 0.0 && w.iter().all(|w_k| w_k.dot(&inside) > bound)).then_some(true)
+    let bound = COMFORT * rays.inside.norm();
+    (bound > 0.0 && (0..6).all(|k| value(w, k, &rays.inside) > bound)).then_some(true)
+}
+
+/// The two coordinates that a vertex's conditions speak of.
+const COORDINATES: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
+
+/// w_k·a without the coordinate that w_k leaves out.
+#[inline(always)]
+fn value(w: &[Vec3; 6], k: usize, a: &Vec3) -> f64 {
+    let (p, q) = COORDINATES[k / 2];
+    w[k][p] * a[p] + w[k][q] * a[q]
+}
+
+/// What the pairs' rays say together.
+struct Rays {
+    /// The sum of the rays, or of their opposites, that keep all conditions.
+    inside: Vec3,
+    /// Whether every ray clearly breaks some condition, and so does its opposite.
+    clear: bool,
+}
+
+impl Rays {
+    /// Takes in the ray of conditions i and j.
+    #[inline(always)]
+    fn take(&mut self, w: &[Vec3; 6], ray: Vec3, i: usize, j: usize) {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for k in 0..6 {
+            if k != i && k != j {
+                let d = value(w, k, &ray);
+                low = -larger(-low, -d);
+                high = larger(high, d);
+            }
+        }
+        // Without branches: which rays are inside is as good as random.
+        let sign = f64::from(u8::from(low >= 0.0)) - f64::from(u8::from((low < 0.0) & (high <= 0.0)));
+        self.inside += ray * sign;
+        self.clear &= (low < -CLEAR) & (high > CLEAR);
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::newton::{Outcome, Search};
     use super::*;
+    use crate::contacts::ScaledGrasp;
     use regrasp_api::{Cone, FingerIndex, Grasp, GraspContact, Random};
+
+    fn three_points(grasp: &ScaledGrasp) -> Option<bool> {
+        super::three_points(grasp.contacts().first_chunk().unwrap())
+    }
 
     fn random_grasp(random: &mut Random, mu: f64) -> ScaledGrasp {
         let mut grasp = Grasp::new(Vec3::zeros());
