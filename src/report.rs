@@ -193,6 +193,11 @@ impl Summary<'_> {
             (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), _) => {
                 format!("change {place}, or raise the friction")
             }
+            (_, _) if self.run.stopped_by == Some(StoppedBy::MaxNodes) && mostly_collides(&outcome.statistics) => {
+                "most motions collide: look whether palm, obstacles and fingers leave a way; if they do, raise `--max-nodes` or add a goal \
+                 half way"
+                    .into()
+            }
             _ => format!("{}, try another `--seed`, or add a goal half way", self.more_budget()),
         };
         format!("{warned}  to try  {advice}\n")
@@ -216,6 +221,16 @@ fn duration(run: &Run) -> Option<f64> {
 fn most_frequent(statistics: &Statistics) -> Option<Reason> {
     let sampler = statistics.plugins.get(&Slot::Sampler)?;
     sampler.rejections.iter().max_by_key(|&(_, count)| count).map(|(&reason, _)| reason)
+}
+
+/// Whether more than half of what the local planners refused collided.
+fn mostly_collides(statistics: &Statistics) -> bool {
+    let planners = [Slot::GraspPlanner, Slot::TransferPlanner, Slot::RegraspPlanner];
+    let refused = planners.iter().filter_map(|slot| statistics.plugins.get(slot)).map(|p| &p.rejections);
+    let (all, collided) = refused.fold((0, 0), |(all, collided), counts| {
+        (all + counts.values().sum::<u64>(), collided + counts.get(&Reason::Collision).copied().unwrap_or(0))
+    });
+    2 * collided > all
 }
 
 fn rejection_counts(statistics: &Statistics) -> Value {
