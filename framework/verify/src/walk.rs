@@ -67,14 +67,9 @@ fn prepare(problem: &Problem) -> Result<(Chains, ObjectModel), String> {
         return Err("the object's mesh is in another file; a plan must stand alone".into());
     }
     let object = regrasp_world::load_object(&problem.object, Path::new("")).map_err(|e| e.to_string())?;
-    let Tolerances { closure, slip, normal, clearance, goal_position, goal_angle } =
-        problem.limits.tolerances;
-    let tolerances = [closure, slip, normal, goal_position, goal_angle];
-    let resolution = &problem.limits.resolution;
-    let heights = [clearance, resolution.lift, resolution.retreat[0], resolution.retreat[1]];
-    let good = tolerances.iter().all(|x| *x > 0.0 && x.is_finite())
-        && heights.iter().all(|x| *x >= 0.0 && x.is_finite());
-    if good { Ok((hand, object)) } else { Err("tolerances and heights must be positive and finite".into()) }
+    // A plan that grants itself tolerances beyond all reason would pass everything else.
+    regrasp_world::check_limits(&problem.limits).map_err(|e| e.to_string())?;
+    Ok((hand, object))
 }
 
 /// How far from zero each joint comes, by its limits or by the plan.

@@ -53,6 +53,7 @@ fn form() {
     assert_eq!(failures(|p| p.scenario.problem.hand.finger.clear()), ["form"]);
     assert_eq!(failures(|p| p.scenario.problem.object.friction = -1.0), ["form"]);
     assert_eq!(failures(|p| p.scenario.problem.limits.tolerances.slip = f64::NAN), ["form"]);
+    assert_eq!(failures(|p| p.scenario.problem.limits.tolerances.closure = 1.0), ["form"]);
     let file = ObjectShape::Mesh(MeshSource { file: Some("cube.stl".into()), ..Default::default() });
     let verdict = judged(|p| p.scenario.problem.object.shape = file);
     assert_eq!(names(&verdict), ["form"]);

@@ -3,8 +3,8 @@
 use crate::error::{WorldError, check_range};
 use crate::hand::ChainHand;
 use regrasp_api::{
-    FingerGrasp, Hand, ObjectModel, ObjectShape, ObstacleDescription, Pose, PoseDescription, Problem,
-    Resolution, Tolerances, Workspace, angle_between,
+    Budget, FingerGrasp, Hand, Limits, ObjectModel, ObjectShape, ObstacleDescription, Pose, PoseDescription,
+    Problem, Resolution, Tolerances, Workspace, angle_between,
 };
 use std::collections::BTreeMap;
 
@@ -18,18 +18,26 @@ type Bound = (&'static str, f64, f64, f64, &'static str);
 /// Refuses what can be told to be wrong from the description alone: numbers out of range, goals that coincide, grasps that do not fit the
 /// hand, obstacles of one name. Hand, object and meshes are checked where they are built.
 pub fn check_problem(problem: &Problem) -> Result<(), WorldError> {
-    let limits = &problem.limits;
-    let bounds = tolerance_bounds(&limits.tolerances)
-        .into_iter()
-        .chain(resolution_bounds(&limits.resolution))
-        .chain(other_bounds(problem));
-    for (key, value, low, high, unit) in bounds {
-        check_range(key, value, low, high, unit)?;
+    check_limits(&problem.limits)?;
+    for (key, g) in ["gravity[0]", "gravity[1]", "gravity[2]"].into_iter().zip(problem.gravity) {
+        check_range(key, g, -1e3, 1e3, " m/s²")?;
     }
     problem.workspace.as_ref().map_or(Ok(()), check_workspace)?;
     obstacle_names(&problem.obstacle)?;
     poses(problem)?;
     check_grasps(problem)
+}
+
+/// Refuses tolerances, steps and budgets outside their ranges.
+pub fn check_limits(limits: &Limits) -> Result<(), WorldError> {
+    let bounds = tolerance_bounds(&limits.tolerances)
+        .into_iter()
+        .chain(resolution_bounds(&limits.resolution))
+        .chain(budget_bounds(&limits.budget));
+    for (key, value, low, high, unit) in bounds {
+        check_range(key, value, low, high, unit)?;
+    }
+    Ok(())
 }
 
 fn tolerance_bounds(tolerances: &Tolerances) -> [Bound; 6] {
@@ -60,16 +68,11 @@ fn resolution_bounds(resolution: &Resolution) -> [Bound; 11] {
     ]
 }
 
-fn other_bounds(problem: &Problem) -> [Bound; 6] {
-    let budget = &problem.limits.budget;
-    let [x, y, z] = problem.gravity;
+fn budget_bounds(budget: &Budget) -> [Bound; 3] {
     [
         ("limits.budget.max_nodes", budget.max_nodes as f64, 1.0, 1e7, ""),
         ("limits.budget.smoothing", budget.smoothing as f64, 0.0, 1e6, ""),
         ("limits.budget.time_limit", budget.time_limit.unwrap_or(1.0), 0.001, 1e7, " s"),
-        ("gravity[0]", x, -1000.0, 1000.0, " m/s²"),
-        ("gravity[1]", y, -1000.0, 1000.0, " m/s²"),
-        ("gravity[2]", z, -1000.0, 1000.0, " m/s²"),
     ]
 }
 

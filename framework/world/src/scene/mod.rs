@@ -3,7 +3,7 @@
 mod check;
 mod embed;
 
-pub use check::{check_problem, check_units};
+pub use check::{check_limits, check_problem, check_units};
 pub use embed::{embed_hand, embed_object, embed_obstacles};
 
 use crate::clearance::SceneClearance;
