@@ -4,6 +4,7 @@
 //! with its own proofs, distances by parry. It works at ten times the plan's resolution on the motion that the plan means (joints and
 //! position linear, orientation by slerp between states), and reports for each check the worst value, the limit and the place.
 
+mod border;
 mod claims;
 mod clearance;
 mod contact_checks;

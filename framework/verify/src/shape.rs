@@ -1,11 +1,12 @@
-//! Solids as a core and a radius around it, and their exact distances by parry. The border between nalgebra and glam.
+//! Solids as a core and a radius around it, and their exact distances by parry.
 
+use crate::border::{parry_pose, segment, vector};
 use crate::solid::Solid;
 use nalgebra::Point3;
-use parry3d_f64::math::{Pose as ParryPose, Rot3, Vector};
+use parry3d_f64::math::Pose as ParryPose;
 use parry3d_f64::query::details::distance_segment_segment;
 use parry3d_f64::query::{self, PointQuery};
-use parry3d_f64::shape::{Cuboid, Segment, Shape as ParryShape};
+use parry3d_f64::shape::{Cuboid, Shape as ParryShape};
 use regrasp_api::{Mesh, MeshSource, PlacedShape, Pose, Shape, Vec3};
 use std::path::Path;
 use std::sync::Arc;
@@ -197,21 +198,8 @@ fn apart(first: &dyn ParryShape, X: &ParryPose, second: &dyn ParryShape) -> f64 
     query::distance(&ParryPose::IDENTITY, first, X, second).map_or(0.0, |answer| answer.distance)
 }
 
-pub(crate) fn segment(a: &Vec3, b: &Vec3) -> Segment {
-    Segment::new(vector(a), vector(b))
-}
-
 fn cuboid(half: &Vec3) -> Cuboid {
     Cuboid::new(vector(half))
-}
-
-pub(crate) fn vector(v: &Vec3) -> Vector {
-    Vector::new(v.x, v.y, v.z)
-}
-
-fn parry_pose(X: &Pose) -> ParryPose {
-    let q = X.rotation.coords;
-    ParryPose::from_parts(vector(&X.translation.vector), Rot3::from_xyzw(q.x, q.y, q.z, q.w))
 }
 
 #[cfg(test)]

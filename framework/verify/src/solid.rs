@@ -1,6 +1,6 @@
 //! A closed mesh with its tree: closest points, distances of segments, supporting planes, all exact.
 
-use crate::shape::{segment, vector};
+use crate::border::{segment, vector};
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::partitioning::BvhNode;
 use parry3d_f64::query::details::closest_points_segment_segment;
