@@ -77,8 +77,10 @@ impl Summary<'_> {
         };
         text += &self.times();
         text += &format!(
-            "  graph         {} nodes in {} components, {} generated\n",
-            statistics.graph_nodes, statistics.components, statistics.generated_nodes
+            "  graph         {} in {}, {} generated\n",
+            counted(statistics.graph_nodes, "node"),
+            counted(statistics.components, "component"),
+            statistics.generated_nodes
         );
         text += &run.plan.as_ref().map(|plan| self.plan_lines(plan)).unwrap_or_default();
         text += &run
@@ -105,9 +107,9 @@ impl Summary<'_> {
         let statistics = &self.run.outcome.statistics;
         let states: usize = plan.segments.iter().map(|segment| segment.states.len()).sum();
         let mut text = format!(
-            "  plan          {} transfers, {} regrasps ({} before smoothing), {states} states, {:.1} s of motion\n",
-            statistics.transfers,
-            statistics.regrasps,
+            "  plan          {}, {} ({} before smoothing), {states} states, {:.1} s of motion\n",
+            counted(statistics.transfers, "transfer"),
+            counted(statistics.regrasps, "regrasp"),
             statistics.regrasps_before_smoothing,
             duration(self.run).unwrap_or(0.0)
         );
@@ -211,6 +213,12 @@ impl Summary<'_> {
             _ => "give it more time",
         }
     }
+}
+
+/// A number with its noun.
+fn counted(number: usize, noun: &str) -> String {
+    let ending = if number == 1 { "" } else { "s" };
+    format!("{number} {noun}{ending}")
 }
 
 /// Duration of the motion (s).
