@@ -37,7 +37,7 @@ pub struct PlanArgs {
     /// A scenario file, or the name of a built-in scenario.
     pub scenario: String,
     /// Seed of all random choices: the same seed gives the same plan, on any number of threads.
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = whole_number)]
+    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = whole_number)]
     pub seed: u64,
     /// Fill a slot with another plugin; can be repeated.
     #[arg(long = "use", value_name = "SLOT=ID")]
@@ -48,13 +48,13 @@ pub struct PlanArgs {
     #[command(flatten)]
     pub libraries: LibraryArgs,
     /// Stop after this many seconds.
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     pub time_limit: Option<f64>,
     /// Generate at most this many nodes for each goal.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
     pub max_nodes: Option<u64>,
     /// Compute with this many threads.
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,
     /// Write the plan to this file.
     #[arg(short, long, value_name = "FILE")]

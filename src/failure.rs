@@ -1,5 +1,6 @@
 //! How the program ends when it does not succeed.
 
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// A failure with its exit code and message.
@@ -33,7 +34,8 @@ impl Failure {
     /// Prints the message to standard error and gives the exit code.
     pub fn exit(self) -> ExitCode {
         let label = if self.code == 2 { "error: " } else { "" };
-        eprintln!("{label}{}", self.message.trim_end());
+        // A reader of standard error that has gone away changes no exit code.
+        let _ = writeln!(io::stderr(), "{label}{}", self.message.trim_end());
         ExitCode::from(self.code)
     }
 }
