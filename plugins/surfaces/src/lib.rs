@@ -3,8 +3,11 @@
 mod bvh;
 mod closest;
 pub mod geodesic;
+mod hollows;
+mod lift;
 mod polyhedron;
 mod rolling;
 mod sharp;
 pub mod steiner;
 mod strip;
+mod walk;

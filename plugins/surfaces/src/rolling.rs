@@ -1,36 +1,17 @@
-//! The fingertip's way above any path over the facets, shared by the surfaces whose paths are not windows.
-//!
-//! How a ball rolls over facets and slides over hollows is the same for every path: `lift` and `follow` are the sources of
-//! `surface/geodesic`, and points, projections and walks are its answers.
-
-// Their home is the default surface: the same source, so that both roll alike; not all of it is of use here.
-#[allow(clippy::duplicate_mod, dead_code)]
-#[path = "geodesic/follow.rs"]
-mod follow;
-#[allow(clippy::duplicate_mod)]
-#[path = "geodesic/lift.rs"]
-mod lift;
-pub(crate) mod trace {
-    //! What a path over the facets is made of.
-
-    use regrasp_api::Vec3;
-
-    /// A point of a path and the facet in which the path leaves it.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub(crate) struct Leg {
-        pub p_OP: Vec3,
-        pub facet: u32,
-    }
-}
+//! A fingertip on an object's facets: whatever a surface answers besides how its paths are found.
 
 use crate::closest::ClosestPoints;
-use crate::geodesic::{Geodesic, GeodesicSettings};
+use crate::hollows::Follower;
+use crate::lift::{Leg, lift};
 use crate::polyhedron::{Place, Polyhedron};
-use follow::Follower;
-use regrasp_api::{BuildError, Contact, Mesh, SurfaceParam, SurfacePath, Waypoint};
-use trace::Leg;
+use crate::sharp::SharpEdges;
+use crate::walk::walk;
+use regrasp_api::{Contact, Mesh, Projection, Random, SurfacePath, Vec3, Waypoint};
 
-/// A contact's place on the facets.
+/// Samples before an object counts as having (almost) no area that a fingertip can touch.
+const MOST_SAMPLES: usize = 1000;
+
+/// A contact with its place on the facets.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spot {
     pub contact: Contact,
@@ -41,32 +22,41 @@ pub(crate) struct Spot {
 #[derive(Clone, Debug)]
 pub(crate) struct Rolling {
     pub polyhedron: Polyhedron,
-    /// Answers what does not depend on how paths are found: points, projections, walks.
-    pub points: Geodesic,
-    closest: ClosestPoints,
+    pub closest: ClosestPoints,
+    sharp: SharpEdges,
+    /// The fingertip's radius (m).
     radius: f64,
+    /// Largest distance (m) between two places of the fingertip that are looked at on solids that are not convex.
     step: f64,
+    /// Sum of the facets' areas up to and with each facet (m²).
+    areas: Vec<f64>,
 }
 
 impl Rolling {
-    /// Prepares `mesh` for fingertips of the given radius (m); the settings mean what they mean for `surface/geodesic`.
-    pub fn new(mesh: &Mesh, radius: f64, sharp_angle_deg: f64, step: f64) -> Result<Self, BuildError> {
-        let settings = GeodesicSettings { sharp_angle_deg, step, ..GeodesicSettings::default() };
+    /// Prepares `mesh` for fingertips of the given radius (m). Edges are sharp beyond `sharp_angle_deg`; `step` (m) is at
+    /// most a fifth of the radius.
+    pub fn new(mesh: &Mesh, radius: f64, sharp_angle_deg: f64, step: f64) -> Self {
         let polyhedron = Polyhedron::new(mesh);
-        Ok(Self {
-            points: Geodesic::new(&settings, mesh, radius)?,
+        let mut sum = 0.0;
+        let areas = (0..mesh.facets().len() as u32).map(|facet| {
+            sum += mesh.area(facet);
+            sum
+        });
+        Self {
+            areas: areas.collect(),
             closest: ClosestPoints::new(&polyhedron),
+            sharp: SharpEdges::new(&polyhedron, sharp_angle_deg.to_radians()),
             polyhedron,
             radius,
             step: step.min((radius / 5.0).max(1e-4)),
-        })
+        }
     }
 
     /// Where a contact lies; its facet is looked up where it does not hold the point.
     pub fn spot(&self, contact: &Contact) -> Spot {
         let mut facet = contact.facet;
         if !self.polyhedron.holds(facet, &contact.p_OC) {
-            facet = self.points.project(&contact.p_OC, Some(facet)).contact.facet;
+            facet = self.project(&contact.p_OC, Some(facet)).contact.facet;
         }
         Spot { contact: *contact, place: self.polyhedron.place(facet, &contact.p_OC) }
     }
@@ -80,15 +70,61 @@ impl Rolling {
         rolled: &mut Vec<Waypoint>,
     ) -> bool {
         let ends = ((&start.contact, start.place), (&end.contact, end.place));
-        lift::lift(&self.polyhedron, self.radius, ends.0, ends.1, legs, path);
+        lift(&self.polyhedron, self.radius, ends.0, ends.1, legs, path);
         path.length = length(legs, &end.contact);
-        let follower = Follower {
-            polyhedron: &self.polyhedron,
-            closest: &self.closest,
-            radius: self.radius,
-            step: self.step,
-        };
-        self.polyhedron.convex || self.radius == 0.0 || follower.follow(path, rolled)
+        self.polyhedron.convex || self.radius == 0.0 || self.follower().follow(path, rolled)
+    }
+
+    /// A contact that the fingertip can have, uniform over the facets' area.
+    pub fn sample(&self, random: &mut Random) -> Contact {
+        for _ in 0..MOST_SAMPLES {
+            let contact = self.on_facets(random);
+            if self.polyhedron.convex || self.follower().is_free(&contact, 1e-10) {
+                return contact;
+            }
+        }
+        self.outermost(&random.direction())
+    }
+
+    /// The contact closest to a fingertip's centre.
+    pub fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
+        self.closest.project(&self.polyhedron, p_OF, hint)
+    }
+
+    /// The contact straight ahead; where the fingertip would sink in there, pushed out to where it touches.
+    pub fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
+        let reached = walk(&self.polyhedron, from, self.spot(from).place, direction_O, distance);
+        if self.polyhedron.convex { reached } else { self.follower().settled(reached) }
+    }
+
+    /// The straight distance (m) to the nearest sharp edge.
+    pub fn edge_distance(&self, contact: &Contact) -> f64 {
+        self.sharp.distance(contact.facet, &contact.p_OC)
+    }
+
+    fn follower(&self) -> Follower<'_> {
+        let (polyhedron, closest) = (&self.polyhedron, &self.closest);
+        Follower { polyhedron, closest, radius: self.radius, step: self.step }
+    }
+
+    /// The vertex farthest along a direction, with that direction as its normal: a contact that every fingertip reaches.
+    fn outermost(&self, n_O: &Vec3) -> Contact {
+        let vertices = self.polyhedron.mesh.vertices();
+        let along = |&vertex: &u32| vertices[vertex as usize].dot(n_O);
+        let farthest = (0..vertices.len() as u32).max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(0);
+        let facet = self.polyhedron.outgoing[farthest as usize] / 3;
+        Contact { facet, p_OC: vertices[farthest as usize], n_O: *n_O }
+    }
+
+    /// A point uniform over the facets' area, with its facet's normal.
+    fn on_facets(&self, random: &mut Random) -> Contact {
+        let wanted = random.unit() * self.areas[self.areas.len() - 1];
+        let facet = self.areas.partition_point(|&sum| sum <= wanted).min(self.areas.len() - 1) as u32;
+        let [a, b, c] = self.polyhedron.mesh.corners(facet);
+        // Turk, "Generating random points in triangles", Graphics Gems, 1990.
+        let (s, t) = (random.unit().sqrt(), random.unit());
+        let p_OC = a * (1.0 - s) + b * (s * (1.0 - t)) + c * (s * t);
+        Contact { facet, p_OC, n_O: self.polyhedron.mesh.normal(facet) }
     }
 }
 

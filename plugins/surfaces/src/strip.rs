@@ -7,8 +7,9 @@
 //! path on polyhedral surfaces", Computer-Aided Design 39, 2007). The result is locally shortest and never longer than the
 //! path that the strip came from.
 
+use crate::lift::Leg;
 use crate::polyhedron::{Planar, Polyhedron, next, previous};
-use crate::rolling::{Spot, trace::Leg};
+use crate::rolling::Spot;
 use std::f64::consts::{PI, TAU};
 
 /// Rounds before straightening ends where it is; a dozen are common.

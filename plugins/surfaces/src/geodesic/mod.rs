@@ -5,27 +5,22 @@
 //!
 //! - *Geodesic*: exact windows led towards the target (`search`), for any closed mesh, to the relative `tolerance`. The
 //!   fingertip rolls over the path's facets (`lift`); on solids that are not convex it slides over the hollows that it
-//!   cannot enter (`follow`). `false` where the mesh's parts are not connected, where an end cannot be touched, or where
+//!   cannot enter (`hollows`). `false` where the mesh's parts are not connected, where an end cannot be touched, or where
 //!   the fingertip would have to leap.
 //! - *Projection*: a walk from the hint, certain outside of convex solids; else a hierarchy of boxes.
 //! - *Walk*: straightest geodesic; on solids that are not convex the end is pushed out to where the fingertip touches.
 //! - *Edge distance*: straight, which is never longer than along the surface.
 
 mod bound;
-mod follow;
-mod lift;
 mod plane;
 mod queue;
 mod search;
 mod trace;
-mod walk;
 mod windows;
 
-use crate::closest::ClosestPoints;
-use crate::polyhedron::Polyhedron;
-use crate::sharp::SharpEdges;
+use crate::lift::Leg;
+use crate::rolling::Rolling;
 use bound::{Ball, LowerBound};
-use follow::Follower;
 use regrasp_api::{
     Build, BuildError, Built, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings,
     SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, Waypoint, check_range, check_settings, inventory,
@@ -34,8 +29,7 @@ use schemars::JsonSchema;
 use search::Search;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
-use trace::Leg;
-use windows::{Scratch, Site};
+use windows::Scratch;
 
 inventory::submit! {
     Entry {
@@ -58,9 +52,6 @@ fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
     let settings = GeodesicSettings::from_json(json)?;
     Ok(Box::new(Geodesic::new(&settings, &parts.object.mesh, parts.hand.fingertip_radius())?))
 }
-
-/// Samples before an object counts as having (almost) no area that a fingertip can touch.
-const MOST_SAMPLES: usize = 1000;
 
 /// Settings of [`Geodesic`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -93,16 +84,9 @@ impl Settings for GeodesicSettings {
 /// The surface of a polyhedron under a fingertip of one radius.
 #[derive(Clone, Debug)]
 pub struct Geodesic {
-    settings: GeodesicSettings,
-    radius: f64,
-    polyhedron: Polyhedron,
-    closest: ClosestPoints,
-    sharp: SharpEdges,
+    tolerance: f64,
+    rolling: Rolling,
     balls: Vec<Ball>,
-    /// Largest distance (m) between two places of the fingertip that are looked at on solids that are not convex.
-    step: f64,
-    /// Sum of the facets' areas up to and with each facet (m²).
-    areas: Vec<f64>,
 }
 
 /// What a path needs beside the answer; one a thread, overwritten by every call.
@@ -121,71 +105,15 @@ impl Geodesic {
     /// Prepares the surface of `mesh` for fingertips of the given radius (m).
     pub fn new(settings: &GeodesicSettings, mesh: &Mesh, radius: f64) -> Result<Self, BuildError> {
         settings.validate()?;
-        let polyhedron = Polyhedron::new(mesh);
-        let closest = ClosestPoints::new(&polyhedron);
-        let mut sum = 0.0;
-        let areas = (0..mesh.facets().len() as u32).map(|facet| {
-            sum += mesh.area(facet);
-            sum
-        });
-        Ok(Self {
-            settings: *settings,
-            radius,
-            step: settings.step.min((radius / 5.0).max(1e-4)),
-            areas: areas.collect(),
-            balls: bound::inscribed_balls(&polyhedron, &closest),
-            closest,
-            sharp: SharpEdges::new(&polyhedron, settings.sharp_angle_deg.to_radians()),
-            polyhedron,
-        })
-    }
-
-    /// The vertex farthest along a direction, with that direction as its normal: a contact that every fingertip reaches.
-    fn outermost(&self, n_O: &Vec3) -> Contact {
-        let vertices = self.polyhedron.mesh.vertices();
-        let along = |&vertex: &u32| vertices[vertex as usize].dot(n_O);
-        let farthest = (0..vertices.len() as u32).max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(0);
-        let facet = self.polyhedron.outgoing[farthest as usize] / 3;
-        Contact { facet, p_OC: vertices[farthest as usize], n_O: *n_O }
-    }
-
-    /// Where a contact lies; its facet is looked up where it does not hold the point.
-    fn site(&self, contact: &Contact) -> Site {
-        let p_OP = contact.p_OC;
-        let facet = if self.polyhedron.holds(contact.facet, &p_OP) {
-            contact.facet
-        } else {
-            self.project(&p_OP, Some(contact.facet)).contact.facet
-        };
-        Site { p_OP, place: self.polyhedron.place(facet, &p_OP) }
-    }
-
-    fn follower(&self) -> Follower<'_> {
-        let (polyhedron, closest) = (&self.polyhedron, &self.closest);
-        Follower { polyhedron, closest, radius: self.radius, step: self.step }
-    }
-
-    /// A point uniform over the facets' area, with its facet's normal.
-    fn on_facets(&self, random: &mut Random) -> Contact {
-        let wanted = random.unit() * self.areas[self.areas.len() - 1];
-        let facet = self.areas.partition_point(|&sum| sum <= wanted).min(self.areas.len() - 1) as u32;
-        let [a, b, c] = self.polyhedron.mesh.corners(facet);
-        // Turk, "Generating random points in triangles", Graphics Gems, 1990.
-        let (s, t) = (random.unit().sqrt(), random.unit());
-        let p_OC = a * (1.0 - s) + b * (s * (1.0 - t)) + c * (s * t);
-        Contact { facet, p_OC, n_O: self.polyhedron.mesh.normal(facet) }
+        let rolling = Rolling::new(mesh, radius, settings.sharp_angle_deg, settings.step);
+        let balls = bound::inscribed_balls(&rolling.polyhedron, &rolling.closest);
+        Ok(Self { tolerance: settings.tolerance, rolling, balls })
     }
 }
 
 impl SurfaceParam for Geodesic {
     fn sample(&self, random: &mut Random) -> Contact {
-        for _ in 0..MOST_SAMPLES {
-            let contact = self.on_facets(random);
-            if self.polyhedron.convex || self.follower().is_free(&contact, 1e-10) {
-                return contact;
-            }
-        }
-        self.outermost(&random.direction())
+        self.rolling.sample(random)
     }
 
     fn geodesic(
@@ -198,31 +126,28 @@ impl SurfaceParam for Geodesic {
         context.count_call(Slot::Surface);
         WORKSPACE.with_borrow_mut(|workspace| {
             let Workspace { search, legs, rolled } = workspace;
+            let polyhedron = &self.rolling.polyhedron;
             let bound = LowerBound::new(&self.balls, &from.p_OC, &to.p_OC);
-            let (start, target) = (self.site(from), self.site(to));
-            let job =
-                Search::new(&self.polyhedron, search, bound, &target, self.settings.tolerance, f64::INFINITY);
-            let Some(found) = job.run(&start, context)? else {
+            let (start, target) = (self.rolling.spot(from), self.rolling.spot(to));
+            let job = Search::new(polyhedron, search, bound, &target, self.tolerance, f64::INFINITY);
+            let Some(last) = job.run(&start, context)? else {
                 path.restart(*from);
                 return Ok(false);
             };
-            trace::trace(&self.polyhedron, search, &found, &to.p_OC, legs);
-            lift::lift(&self.polyhedron, self.radius, (from, start.place), (to, target.place), legs, path);
-            path.length = found.length;
-            Ok(self.polyhedron.convex || self.radius == 0.0 || self.follower().follow(path, rolled))
+            trace::trace(polyhedron, search, last, &to.p_OC, legs);
+            Ok(self.rolling.roll((&start, &target), legs, path, rolled))
         })
     }
 
     fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
-        self.closest.project(&self.polyhedron, p_OF, hint)
+        self.rolling.project(p_OF, hint)
     }
 
     fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
-        let reached = walk::walk(&self.polyhedron, from, self.site(from).place, direction_O, distance);
-        if self.polyhedron.convex { reached } else { self.follower().settled(reached) }
+        self.rolling.walk(from, direction_O, distance)
     }
 
     fn edge_distance(&self, contact: &Contact) -> f64 {
-        self.sharp.distance(contact.facet, &contact.p_OC)
+        self.rolling.edge_distance(contact)
     }
 }

@@ -9,8 +9,9 @@
 
 use super::bound::LowerBound;
 use super::plane::{cross, exit, part_of_opposite, rotate};
-use super::windows::{Arrival, FLAG, Found, Label, Scratch, Site, Source, UNKNOWN, Window};
+use super::windows::{Arrival, FLAG, Label, Scratch, Source, UNKNOWN, Window};
 use crate::polyhedron::{HalfEdge, Planar, Polyhedron, next, planar_norm, previous};
+use crate::rolling::Spot;
 use regrasp_api::{CallError, Context, Vec3};
 use std::f64::consts::{PI, TAU};
 
@@ -30,7 +31,8 @@ pub(super) struct Search<'a> {
     tolerance: f64,
     /// Windows at or above this length (m) are dropped.
     limit: f64,
-    best: Option<Found>,
+    /// The last piece of the best path found.
+    best: Option<Arrival>,
 }
 
 impl<'a> Search<'a> {
@@ -39,7 +41,7 @@ impl<'a> Search<'a> {
         polyhedron: &'a Polyhedron,
         scratch: &'a mut Scratch,
         bound: LowerBound,
-        target: &Site,
+        target: &Spot,
         tolerance: f64,
         known: f64,
     ) -> Self {
@@ -53,12 +55,12 @@ impl<'a> Search<'a> {
         scratch.target_facets.clear();
         polyhedron.facets_at(target.place, |facet| scratch.target_facets.push(facet));
         let limit = known * (1.0 - tolerance);
-        Self { polyhedron, scratch, bound, p_OT: target.p_OP, tolerance, limit, best: None }
+        Self { polyhedron, scratch, bound, p_OT: target.contact.p_OC, tolerance, limit, best: None }
     }
 
-    /// The shortest path from `start` if it is shorter than the known one by more than the tolerance.
-    pub fn run(mut self, start: &Site, context: &Context<'_>) -> Result<Option<Found>, CallError> {
-        let least = self.bound.of_point(&start.p_OP).max(FINEST * self.polyhedron.radius);
+    /// The last piece of the shortest path from `start` if it is shorter than the known one by more than the tolerance.
+    pub fn run(mut self, start: &Spot, context: &Context<'_>) -> Result<Option<Arrival>, CallError> {
+        let least = self.bound.of_point(&start.contact.p_OC).max(FINEST * self.polyhedron.radius);
         self.scratch.queue.restart(least);
         self.spread_start(start);
         let mut count = 0;
@@ -81,24 +83,24 @@ impl<'a> Search<'a> {
 
     fn offer(&mut self, length: f64, last: Arrival) {
         if length < self.limit {
-            self.best = Some(Found { length, last });
+            self.best = Some(last);
             self.limit = length * (1.0 - self.tolerance);
             self.scratch.queue.cut(self.limit);
         }
     }
 
-    fn spread_start(&mut self, start: &Site) {
+    fn spread_start(&mut self, start: &Spot) {
         let polyhedron = self.polyhedron;
         polyhedron.facets_at(start.place, |facet| self.scratch.start_facets.push(facet));
-        let source = self.add_source(Source { p_OS: start.p_OP, length: 0.0, before: None });
+        let source = self.add_source(Source { p_OS: start.contact.p_OC, length: 0.0, before: None });
         for index in 0..self.scratch.start_facets.len() {
             let facet = self.scratch.start_facets[index];
             if self.scratch.target_facets.contains(&facet) {
-                self.offer((start.p_OP - self.p_OT).norm(), Arrival::Source(source, facet));
+                self.offer((start.contact.p_OC - self.p_OT).norm(), Arrival::Source(source, facet));
             }
             for edge in 3 * facet..3 * facet + 3 {
                 let vertex = polyhedron.half_edges[edge as usize].vertex;
-                self.label(vertex, &start.p_OP, 0.0, Arrival::Source(source, facet));
+                self.label(vertex, &start.contact.p_OC, 0.0, Arrival::Source(source, facet));
                 self.open(edge, source, 0.0..=f64::INFINITY);
             }
         }

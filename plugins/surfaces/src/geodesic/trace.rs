@@ -1,27 +1,21 @@
 //! From the windows of a search back to the path's points.
 
 use super::plane::cross;
-use super::windows::{Arrival, Found, Parent, Scratch};
+use super::windows::{Arrival, Parent, Scratch};
+use crate::lift::Leg;
 use crate::polyhedron::{Planar, Polyhedron, next, previous};
 use regrasp_api::Vec3;
-
-/// A point of a path and the facet in which the path leaves it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Leg {
-    pub p_OP: Vec3,
-    pub facet: u32,
-}
 
 /// Writes the path's points from start to target, the target excluded, each with the facet of the piece that follows.
 pub(super) fn trace(
     polyhedron: &Polyhedron,
     scratch: &Scratch,
-    found: &Found,
+    last: Arrival,
     p_OT: &Vec3,
     legs: &mut Vec<Leg>,
 ) {
     legs.clear();
-    let (mut arrival, mut to) = (found.last, *p_OT);
+    let (mut arrival, mut to) = (last, *p_OT);
     loop {
         let source = match arrival {
             Arrival::Window(index) => strip(polyhedron, scratch, index, &to, legs),

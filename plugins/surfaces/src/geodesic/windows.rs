@@ -1,7 +1,7 @@
 //! What a search for a shortest path keeps: windows, sources, labels of vertices.
 
 use super::queue::Queue;
-use crate::polyhedron::{Place, Planar};
+use crate::polyhedron::Planar;
 use regrasp_api::Vec3;
 
 /// Tells indices of sources (and, in the queue, of vertices) from those of windows.
@@ -80,18 +80,4 @@ pub(super) struct Scratch {
     pub start_facets: Vec<u32>,
     /// Facets that hold the target.
     pub target_facets: Vec<u32>,
-}
-
-/// A point with the facet it was given with and its place.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Site {
-    pub p_OP: Vec3,
-    pub place: Place,
-}
-
-/// The best path found, by its last piece.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
-    pub length: f64,
-    pub last: Arrival,
 }

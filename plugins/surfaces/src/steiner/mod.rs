@@ -25,7 +25,8 @@
 
 mod graph;
 
-use crate::rolling::{Rolling, Spot, trace::Leg};
+use crate::lift::Leg;
+use crate::rolling::{Rolling, Spot};
 use crate::strip::Strip;
 use graph::{Found, Graph, START, Scratch, Search};
 use regrasp_api::{
@@ -117,7 +118,7 @@ impl Steiner {
     /// Prepares the surface of `mesh` for fingertips of the given radius (m).
     pub fn new(settings: &SteinerSettings, mesh: &Mesh, radius: f64) -> Result<Self, BuildError> {
         settings.validate()?;
-        let rolling = Rolling::new(mesh, radius, settings.sharp_angle_deg, settings.step)?;
+        let rolling = Rolling::new(mesh, radius, settings.sharp_angle_deg, settings.step);
         let count = |length: f64| (length / settings.spacing).ceil().max(f64::from(settings.fewest));
         let points: f64 = rolling.polyhedron.half_edges.iter().map(|edge| count(edge.length) / 2.0).sum();
         if points > MOST_POINTS {
@@ -178,7 +179,7 @@ impl Steiner {
 
 impl SurfaceParam for Steiner {
     fn sample(&self, random: &mut Random) -> Contact {
-        self.rolling.points.sample(random)
+        self.rolling.sample(random)
     }
 
     fn geodesic(
@@ -207,14 +208,14 @@ impl SurfaceParam for Steiner {
     }
 
     fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
-        self.rolling.points.project(p_OF, hint)
+        self.rolling.project(p_OF, hint)
     }
 
     fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
-        self.rolling.points.walk(from, direction_O, distance)
+        self.rolling.walk(from, direction_O, distance)
     }
 
     fn edge_distance(&self, contact: &Contact) -> f64 {
-        self.rolling.points.edge_distance(contact)
+        self.rolling.edge_distance(contact)
     }
 }

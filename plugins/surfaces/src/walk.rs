@@ -18,7 +18,7 @@ struct Heading {
 
 /// The contact reached by a straightest geodesic: straight in every facet, unfolded across edges; at a vertex with equal
 /// angles on both sides (Polthier & Schmies, "Straightest geodesics on polyhedral surfaces", 1998).
-pub(super) fn walk(
+pub(crate) fn walk(
     polyhedron: &Polyhedron,
     from: &Contact,
     place: Place,

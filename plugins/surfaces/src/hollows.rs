@@ -5,8 +5,8 @@
 //! straight, pushed out (or back) wherever the straight way does not touch. In a concave edge both places are the same, and
 //! the contact jumps from one facet to the other.
 
-use super::lift::angle;
 use crate::closest::{ClosestPoints, closest_of_facet};
+use crate::lift::angle;
 use crate::polyhedron::Polyhedron;
 use regrasp_api::{Contact, Projection, SurfacePath, Vec3, Waypoint, slerp_normals};
 
@@ -31,7 +31,7 @@ struct Touch {
 }
 
 /// Follows a path with a ball of one radius.
-pub(super) struct Follower<'a> {
+pub(crate) struct Follower<'a> {
     pub polyhedron: &'a Polyhedron,
     pub closest: &'a ClosestPoints,
     pub radius: f64,

@@ -1,20 +1,26 @@
 //! The path of the fingertip above a path of the contact point.
 
-use super::trace::Leg;
 use crate::polyhedron::{Place, Polyhedron};
 use regrasp_api::{Contact, SurfacePath, Vec3};
+
+/// A point of a path over the facets and the facet in which the path leaves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Leg {
+    pub p_OP: Vec3,
+    pub facet: u32,
+}
 
 /// Angles (rad) and lengths (m) below this do not make a waypoint of their own.
 const NEGLIGIBLE: f64 = 1e-12;
 
 /// The angle between two unit vectors (rad).
-pub(super) fn angle(a: &Vec3, b: &Vec3) -> f64 {
+pub(crate) fn angle(a: &Vec3, b: &Vec3) -> f64 {
     a.cross(b).norm().atan2(a.dot(b))
 }
 
 /// Rolls a ball of the given radius (m) over the facets of `legs`: straight over a facet, turning about its contact at a
 /// convex edge. Exact on a convex solid.
-pub(super) fn lift(
+pub(crate) fn lift(
     polyhedron: &Polyhedron,
     radius: f64,
     (from, start): (&Contact, Place),
