@@ -1,0 +1,7 @@
+//! Comparisons of plugin combinations: every scenario, planned by every variant, with every seed; every plan verified.
+
+mod record;
+mod study;
+
+pub use record::*;
+pub use study::*;

@@ -1,0 +1,59 @@
+//! The standard normal distribution.
+
+/// The value that a standard normal variable exceeds with probability 0.025: half the width of a 95 % interval in standard deviations.
+pub const Z_95: f64 = 1.959_963_984_540_054;
+
+/// P(Z ≥ z) of a standard normal variable; relative error below 1e-12 for z up to 37, where it underflows.
+///
+/// The series of the error function near zero, its continued fraction beyond (M. Abramowitz, I. A. Stegun, "Handbook of Mathematical
+/// Functions", 1964, 26.2.11 and 26.2.14).
+pub fn upper_tail(z: f64) -> f64 {
+    let tail = match z.abs() {
+        x if x < 2.5 => 0.5 - density(x) * series(x),
+        x => density(x) * fraction(x),
+    };
+    if z < 0.0 { 1.0 - tail } else { tail }
+}
+
+fn density(x: f64) -> f64 {
+    (-0.5 * x * x).exp() / std::f64::consts::TAU.sqrt()
+}
+
+/// x + x³/3 + x⁵/(3·5) + …
+fn series(x: f64) -> f64 {
+    let (mut term, mut sum, mut odd) = (x, x, 1.0);
+    while term > 1e-17 * sum {
+        odd += 2.0;
+        term *= x * x / odd;
+        sum += term;
+    }
+    sum
+}
+
+/// 1/(x + 1/(x + 2/(x + 3/(x + …)))), from its 200th level outwards: at x = 2.5 that is exact to rounding.
+fn fraction(x: f64) -> f64 {
+    1.0 / (1..200).rev().fold(x, |below, level| x + f64::from(level) / below)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tails_are_those_of_the_tables() {
+        // scipy 1.17.1: scipy.stats.norm.sf(z).
+        let table = [
+            (0.0, 0.5),
+            (0.5, 0.308_537_538_725_986_9),
+            (Z_95, 0.025),
+            (2.4999, 0.006_211_417_909_604_0),
+            (2.5001, 0.006_207_912_107_041_2),
+            (4.0, 3.167_124_183_311_992e-5),
+            (10.0, 7.619_853_024_160_527e-24),
+            (-1.0, 0.841_344_746_068_542_9),
+        ];
+        for (z, tail) in table {
+            assert!((upper_tail(z) / tail - 1.0).abs() < 1e-11, "{z}: {} is not {tail}", upper_tail(z));
+        }
+    }
+}

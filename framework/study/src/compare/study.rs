@@ -1,0 +1,180 @@
+//! What a study is: everything that is needed to repeat it, the content of `study.json`.
+
+use super::RunRecord;
+use crate::scenario::PaperFigures;
+use regrasp_api::{Problem, Slot};
+use regrasp_plan::PluginChoice;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The version of `study.json` and `runs.jsonl` that this program reads and writes.
+pub const STUDY_VERSION: u32 = 1;
+
+/// The name of the format, the file's first key.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum StudyFormat {
+    /// A study.
+    #[default]
+    #[serde(rename = "regrasp-study")]
+    RegraspStudy,
+}
+
+/// A study: every scenario is planned by every variant with every seed, and every plan is verified.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Study {
+    /// Says that this is a study.
+    pub format: StudyFormat,
+    /// [`STUDY_VERSION`].
+    pub version: u32,
+    /// The command that makes this study, word by word, but for what does not change its results: folder, threads, shard.
+    pub command: Vec<String>,
+    /// Versions of what computes, by name: `regrasp`, `program` (a hash of the executable), `library NAME` (a hash of a loaded library).
+    pub versions: BTreeMap<String, String>,
+    /// The machines that took part, in the order in which they came; usually one.
+    pub machines: Vec<Machine>,
+    /// When the study began: seconds since 1970-01-01 UTC; of a merged study, when its first part did.
+    pub started_s: u64,
+    /// The part of the study that is here; absent where it is the whole.
+    pub shard: Option<Shard>,
+    /// The scenarios, in the order in which they were named; their names differ.
+    pub scenarios: Vec<StudyScenario>,
+    /// The slots in which the variants differ, in the order of the slots.
+    pub varied: Vec<Slot>,
+    /// What is compared; the first is the baseline, with which the others are compared. Their names differ.
+    pub variants: Vec<Variant>,
+    /// Scenarios that a variant cannot plan, and that were left out; there are no runs of them.
+    pub left_out: Vec<LeftOut>,
+    /// The seeds.
+    pub seeds: Seeds,
+    /// Most seconds for one run; none where absent.
+    pub time_limit_s: Option<f64>,
+}
+
+/// A scenario of a study.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StudyScenario {
+    /// Its name, unique in the study.
+    pub name: String,
+    /// What it shows, in one line.
+    pub summary: String,
+    /// Where the problem comes from.
+    pub source: String,
+    /// What was published about it.
+    pub paper: Option<PaperFigures>,
+    /// For each variant, in their order: the plugin in each slot, with full id and complete settings.
+    pub plugins: Vec<BTreeMap<Slot, PluginChoice>>,
+    /// The problem with all limits, meshes inside.
+    pub problem: Problem,
+}
+
+/// One choice of plugins that is compared with others.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Variant {
+    /// Its name, unique in the study, such as `force-closure, rlg`.
+    pub name: String,
+    /// In each slot that is varied and that this variant fills by itself: what it fills it with, in a word or a few, such as `socp` or
+    /// `interleaved end=0.8`.
+    pub levels: BTreeMap<Slot, String>,
+}
+
+/// A scenario that a variant cannot plan.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeftOut {
+    /// The scenario's name.
+    pub scenario: String,
+    /// The variant's name.
+    pub variant: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// Consecutive seeds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Seeds {
+    /// The first.
+    pub first: u64,
+    /// How many.
+    pub count: u64,
+}
+
+impl Seeds {
+    /// The seeds in ascending order.
+    pub fn iter(self) -> impl Iterator<Item = u64> {
+        (0..self.count).map(move |k| self.first + k)
+    }
+}
+
+/// One of several parts of a study: all variants of every `of`-th pair of scenario and seed, so that runs that are compared with each other
+/// were made on the same machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shard {
+    /// Which part, counted from 1.
+    pub part: u64,
+    /// How many parts there are.
+    pub of: u64,
+}
+
+/// A machine, as far as it matters for times.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Machine {
+    /// Its name in the network; empty where it is unknown.
+    pub host: String,
+    /// Its operating system, such as `linux`.
+    pub os: String,
+    /// Its architecture, such as `x86_64`.
+    pub arch: String,
+    /// The processor's model; empty where it is unknown.
+    pub cpu: String,
+    /// How many threads the processor runs at once.
+    pub cores: usize,
+    /// How many runs were made at once, each on one thread.
+    pub threads: usize,
+}
+
+/// What identifies a run within its study: indices of scenario and variant, and the seed. In the order of `runs.csv`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct RunKey {
+    /// Index into [`Study::scenarios`].
+    pub scenario: usize,
+    /// Index into [`Study::variants`].
+    pub variant: usize,
+    /// The seed.
+    pub seed: u64,
+}
+
+impl Study {
+    /// The plugins with which a run is made.
+    pub fn plugins(&self, key: RunKey) -> &BTreeMap<Slot, PluginChoice> {
+        &self.scenarios[key.scenario].plugins[key.variant]
+    }
+
+    /// Index of the scenario with this name.
+    pub fn scenario_index(&self, name: &str) -> Option<usize> {
+        self.scenarios.iter().position(|scenario| scenario.name == name)
+    }
+
+    /// Index of the variant with this name.
+    pub fn variant_index(&self, name: &str) -> Option<usize> {
+        self.variants.iter().position(|variant| variant.name == name)
+    }
+
+    /// Which run of the study a record is of; `None` where it is of none.
+    pub fn key(&self, record: &RunRecord) -> Option<RunKey> {
+        let scenario = self.scenario_index(&record.scenario)?;
+        let variant = self.variant_index(&record.variant)?;
+        Some(RunKey { scenario, variant, seed: record.seed })
+    }
+
+    /// Whether a variant's runs of a scenario were left out.
+    pub fn is_left_out(&self, scenario: usize, variant: usize) -> bool {
+        let (scenario, variant) = (&self.scenarios[scenario].name, &self.variants[variant].name);
+        self.left_out.iter().any(|pair| pair.scenario == *scenario && pair.variant == *variant)
+    }
+}
