@@ -19,6 +19,7 @@ fn probe(kind: SegmentName, states: &[[f64; 3]], edit: impl FnOnce(&mut Problem)
         velocity: 10.0,
         acceleration: 1000.0,
         effort: 1.0,
+        mimic: None,
         link: vec![],
     };
     let finger = FingerDescription {
@@ -36,6 +37,7 @@ fn probe(kind: SegmentName, states: &[[f64; 3]], edit: impl FnOnce(&mut Problem)
         fingertip: Default::default(),
         palm: vec![],
         finger: vec![finger],
+        touching: vec![],
     };
     problem.start.pose.position = [0.0, 0.0, -0.2];
     problem.obstacle.clear();

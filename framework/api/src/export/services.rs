@@ -60,6 +60,10 @@ impl Hand for GuardedService<'_, dyn Hand + '_> {
         served("service/hand", || self.0.inverse(finger, p_HF, near), || None)
     }
 
+    fn settle(&self, finger: FingerIndex, joints: &mut FingerJoints) {
+        served("service/hand", || self.0.settle(finger, joints), || ())
+    }
+
     fn within_limits(&self, finger: FingerIndex, joints: &FingerJoints) -> bool {
         served("service/hand", || self.0.within_limits(finger, joints), || false)
     }

@@ -1,6 +1,7 @@
 //! Hands as serial chains of joints with link shapes and a spherical fingertip.
 
 use super::{PlacedShape, PoseDescription};
+use crate::{Body, FingerIndex};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +24,46 @@ pub struct HandDescription {
     pub palm: Vec<PlacedShape>,
     /// The fingers, in the order in which everything counts them.
     pub finger: Vec<FingerDescription>,
+    /// Pairs of bodies that touch by construction and are never compared, beside those that always are left out (consecutive links of a
+    /// finger; the palm and a first link that touch in the resting posture). A body is named by `palm`, by the joint before the link, or,
+    /// for a fingertip's ball, by its finger.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub touching: Vec<[String; 2]>,
 }
+
+impl HandDescription {
+    /// The body that `touching` calls by this name: `palm`, a joint (the link behind it) or a finger (its fingertip's ball).
+    ///
+    /// `None` where nothing, or more than one thing, has the name.
+    pub fn body_named(&self, name: &str) -> Option<Body> {
+        let palm = (name == PALM).then_some(Body::Palm);
+        let fingers = self.finger.iter().enumerate();
+        let mut found = palm.into_iter().chain(fingers.flat_map(|(f, finger)| {
+            let index = FingerIndex(f as u8);
+            let tip = (finger.name == name).then_some(Body::Fingertip(index));
+            let links = finger.joint.iter().enumerate().filter(|(_, joint)| joint.name == name);
+            tip.into_iter().chain(links.map(move |(link, _)| Body::Link(index, link as u8)))
+        }));
+        let first = found.next()?;
+        found.next().is_none().then_some(first)
+    }
+
+    /// The name by which `touching` calls a body of the hand; `None` for object and obstacles.
+    pub fn body_name(&self, body: Body) -> Option<&str> {
+        match body {
+            Body::Palm => Some(PALM),
+            Body::Fingertip(finger) => self.finger.get(finger.index()).map(|finger| finger.name.as_str()),
+            Body::Link(finger, link) => {
+                let joint = self.finger.get(finger.index())?.joint.get(usize::from(link))?;
+                Some(&joint.name)
+            }
+            Body::Object | Body::Obstacle(_) => None,
+        }
+    }
+}
+
+/// What `touching` calls the palm.
+const PALM: &str = "palm";
 
 /// What a fingertip does on the object while the object moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -90,9 +130,32 @@ pub struct JointDescription {
     /// Largest effort (N·m; N where prismatic).
     #[serde(default = "default_effort")]
     pub effort: f64,
+    /// Which joint drives this one; absent where it moves by itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mimic: Option<Mimic>,
     /// Shapes of the link behind the joint, in the joint's moved frame.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub link: Vec<PlacedShape>,
+}
+
+/// A joint that another one of the same finger drives, as by a tendon or a gear: q = `multiplier` · q of `joint` + `offset`.
+///
+/// It counts as a joint everywhere (plans hold its position), but is none that a finger can choose.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mimic {
+    /// The driving joint: one of the same finger that moves by itself.
+    pub joint: String,
+    /// By what its position is multiplied.
+    #[serde(default = "default_multiplier")]
+    pub multiplier: f64,
+    /// What is added (rad; m where prismatic).
+    #[serde(default)]
+    pub offset: f64,
+}
+
+fn default_multiplier() -> f64 {
+    1.0
 }
 
 /// How a joint moves.

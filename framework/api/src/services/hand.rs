@@ -83,6 +83,12 @@ pub trait Hand: Send + Sync {
     /// a continuous motion of the fingertip gives a continuous motion of the joints. Exact to 1e-9 m.
     fn inverse(&self, finger: FingerIndex, p_HF: &Vec3, near: &FingerJoints) -> Option<FingerJoints>;
 
+    /// Puts the joints that others drive (mimic joints) where those have them; nothing to do in a hand without such joints.
+    ///
+    /// The hand's own answers take driven joints to be there already: who changes joints by anything but [`Hand::inverse`] or the straight
+    /// way between two settled postures calls this before the joints are stored.
+    fn settle(&self, _finger: FingerIndex, _joints: &mut FingerJoints) {}
+
     /// Whether every joint is within its limits.
     fn within_limits(&self, finger: FingerIndex, joints: &FingerJoints) -> bool {
         let models = &self.finger(finger).joints;

@@ -37,6 +37,7 @@ pub fn joint(kind: JointKind, axis: [f64; 3], position: [f64; 3], limits: (f64, 
         velocity: 1.0,
         acceleration: 1.0,
         effort: 1.0,
+        mimic: None,
         link: Vec::new(),
     }
 }
@@ -59,6 +60,7 @@ pub fn one_finger(mut joints: Vec<JointDescription>, tip: [f64; 3]) -> HandDescr
         fingertip: Default::default(),
         palm: Vec::new(),
         finger: vec![finger],
+        touching: Vec::new(),
     }
 }
 
