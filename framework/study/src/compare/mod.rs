@@ -1,6 +1,7 @@
 //! Comparisons of plugin combinations: every scenario, planned by every variant, with every seed; every plan verified.
 
 mod record;
+pub mod statistics;
 mod study;
 
 pub use record::*;

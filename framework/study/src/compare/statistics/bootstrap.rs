@@ -59,10 +59,10 @@ mod tests {
 
     #[test]
     fn agrees_with_scipy() {
-        // scipy 1.17.1: scipy.stats.bootstrap((range(1, 52),), numpy.median, method="percentile") gives BOOT_SCIPY.
+        // scipy 1.17.1: scipy.stats.bootstrap((range(1, 52),), numpy.median, method="percentile") gives 19 and 33.
         let found = median_interval((1..52).map(f64::from)).unwrap();
         assert_eq!(found.value, 26.0);
-        assert!((found.low - BOOT_LOW).abs() <= 1.0 && (found.high - BOOT_HIGH).abs() <= 1.0, "{found:?}");
+        assert!((found.low - 19.0).abs() <= 1.0 && (found.high - 33.0).abs() <= 1.0, "{found:?}");
     }
 
     #[test]

@@ -23,7 +23,14 @@ mod tests {
     #[test]
     fn values_of_scipy() {
         // scipy 1.17.1: scipy.stats.binomtest(k, n, 0.5).pvalue.
-        for (k, n, expected) in MCNEMAR {
+        let table = [
+            (0, 5, 0.0625),
+            (1, 9, 0.039_062_5),
+            (3, 20, 0.002_576_828_002_929_687_5),
+            (40, 100, 0.056_887_933_640_980_89),
+            (1400, 3000, 0.000_278_563_961_039_233_66),
+        ];
+        for (k, n, expected) in table {
             assert!((mcnemar(k, n - k) / expected - 1.0).abs() < 1e-9, "{k} of {n}: {}", mcnemar(k, n - k));
             assert_eq!(mcnemar(k, n - k), mcnemar(n - k, k));
         }

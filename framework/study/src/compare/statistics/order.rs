@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn quantiles_are_those_of_numpy() {
-        // numpy 2.x: numpy.quantile([1, 2, 4, 8, 16], [0.1, 0.25, 0.5, 0.9]).
+        // numpy 2.4.6: numpy.quantile([1, 2, 4, 8, 16], [0.1, 0.25, 0.5, 0.9]).
         let values = [1.0, 2.0, 4.0, 8.0, 16.0];
         for (share, expected) in [(0.0, 1.0), (0.1, 1.4), (0.25, 2.0), (0.5, 4.0), (0.9, 12.8), (1.0, 16.0)] {
             assert!((quantile(&values, share).unwrap() - expected).abs() < 1e-12);

@@ -35,7 +35,7 @@ fn skipped(n: usize) -> Option<usize> {
     }
     let ranks: Vec<usize> = (1..=n).collect();
     let mut tail = 0.0;
-    let is_rare = |chance: &f64| {
+    let mut is_rare = |chance: &f64| {
         tail += chance;
         tail <= ALPHA / 2.0
     };
@@ -73,7 +73,11 @@ mod tests {
 
     /// All of them, the slow and obvious way.
     fn walsh_averages(values: &[f64]) -> Vec<f64> {
-        sorted((0..values.len()).flat_map(|i| (i..values.len()).map(move |j| (i, j))).map(|(i, j)| 0.5 * (values[i] + values[j])))
+        sorted(
+            (0..values.len())
+                .flat_map(|i| (i..values.len()).map(move |j| (i, j)))
+                .map(|(i, j)| 0.5 * (values[i] + values[j])),
+        )
     }
 
     #[test]
