@@ -27,7 +27,6 @@
 
 pub use regrasp_api as api;
 pub use regrasp_host as host;
-#[cfg(feature = "rapier")]
 pub use regrasp_physics as physics;
 pub use regrasp_plan as plan;
 pub use regrasp_planner as planner;

@@ -1,6 +1,7 @@
 //! The efforts with which the fingers hold the object along a motion.
 
-use crate::grip::{Grip, GripContact, best_grip, margin, residual_forces};
+use crate::force::{ContactForce, Friction};
+use crate::grip::{Grip, GripContact, balanced, best_grip, margin};
 use crate::settings::SimulationSettings;
 use regrasp_api::{
     Configuration, FingerIndex, FingerJoints, FingerSet, Hand, ObjectModel, PerFinger, Rotation, Vec3,
@@ -8,6 +9,18 @@ use regrasp_api::{
 
 /// What part of a solved margin forces that are carried along must keep.
 const KEPT: f64 = 0.8;
+
+/// How the object is held at one configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Held {
+    /// What each finger exerts on the object, given in H; `None` for fingers that do not hold it.
+    pub forces: PerFinger<Option<ContactForce>>,
+    /// The joints' efforts that exert this (N·m; N where prismatic): Jᵀ f, 0 for fingers that do not hold. The links' weight comes on top.
+    pub efforts: PerFinger<FingerJoints>,
+    /// The least distance of a force from its friction cone (N), see [`Friction::margin`]. Where it is not positive, no forces within the cones and the
+    /// joints' efforts hold the object, and these are the nearest.
+    pub margin: f64,
+}
 
 /// Finds the grip at one configuration after another.
 ///
@@ -18,7 +31,7 @@ pub(crate) struct Holder<'a> {
     object: &'a ObjectModel,
     /// The object's weight in H (N).
     weight: Vec3,
-    mu: f64,
+    friction: Friction,
     most: f64,
     share: f64,
     last: Option<Solved>,
@@ -32,27 +45,22 @@ struct Solved {
 }
 
 impl<'a> Holder<'a> {
-    /// For an object that the fingers take to have friction `mu` (no unit) and its own mass, under gravity `g_H` (m/s²).
+    /// For contacts that the fingers take to have this friction, and an object of its own mass, under gravity `g_H` (m/s²).
     pub fn new(
         (hand, object, g_H): (&'a dyn Hand, &'a ObjectModel, Vec3),
-        mu: f64,
+        friction: Friction,
         settings: &SimulationSettings,
     ) -> Self {
         let weight = g_H * object.mass;
         let most = settings.grip.unwrap_or((3.0 * weight.norm()).max(2.0));
-        Self { hand, object, weight, mu, most, share: settings.effort_share, last: None }
+        Self { hand, object, weight, friction, most, share: settings.effort_share, last: None }
     }
 
-    /// The joints' efforts (N·m; N) with which the fingers of `holding` hold the object at `q`, and their margin (N): 0 or less where no forces
-    /// within the cones and the efforts hold it. `None` where no forces of any direction do.
-    pub fn efforts(
-        &mut self,
-        q: &Configuration,
-        holding: FingerSet,
-    ) -> Option<(PerFinger<FingerJoints>, f64)> {
+    /// How the fingers of `holding` hold the object at `q`; `None` where no forces of any direction do.
+    pub fn hold(&mut self, q: &Configuration, holding: FingerSet) -> Option<Held> {
         let contacts = self.contacts(q, holding);
         let carried = self.last.take().and_then(|last| self.carry(last, &contacts));
-        let (grip, margin) = match carried {
+        let (grip, solved) = match carried {
             Some(carried) => carried,
             None => {
                 let grip = self.solve(&contacts)?;
@@ -60,27 +68,28 @@ impl<'a> Holder<'a> {
                 (grip, margin)
             }
         };
-        let mut efforts = q.joints;
-        for finger in q.joints.fingers() {
-            efforts[finger] = FingerJoints::zeros(q.joints[finger].len());
+        let mut held = Held {
+            forces: PerFinger::filled(q.joints.len(), None),
+            efforts: PerFinger::from_fn(q.joints.len(), |f| FingerJoints::zeros(q.joints[f].len())),
+            margin: grip.margin,
+        };
+        for (contact, exerted) in contacts.iter().zip(&grip.forces) {
+            held.forces[contact.finger] = Some(*exerted);
+            held.efforts[contact.finger] = contact.efforts_of(exerted);
         }
-        for (contact, force) in contacts.iter().zip(&grip.forces) {
-            efforts[contact.finger] = contact.efforts_of(force);
-        }
-        let now = grip.margin;
-        self.last = Some(Solved { contacts, grip, margin });
-        Some((efforts, now))
+        self.last = Some(Solved { contacts, grip, margin: solved });
+        Some(held)
     }
 
     /// The best grip within the bounds wished for; where none is inside the cones, the best that the joints' whole efforts allow.
     fn solve(&self, contacts: &[GripContact]) -> Option<Grip> {
-        let wished = best_grip(contacts, self.mu, &self.weight, Some(self.most));
+        let wished = best_grip(contacts, &self.friction, &self.weight, Some(self.most));
         if wished.as_ref().is_some_and(|grip| grip.margin > 0.0) {
             return wished;
         }
         let mut contacts = contacts.to_vec();
         contacts.iter_mut().flat_map(|contact| &mut contact.efforts).for_each(|effort| *effort /= self.share);
-        best_grip(&contacts, self.mu, &self.weight, None)
+        best_grip(&contacts, &self.friction, &self.weight, None)
     }
 
     fn carry(&self, last: Solved, contacts: &[GripContact]) -> Option<(Grip, f64)> {
@@ -89,15 +98,14 @@ impl<'a> Holder<'a> {
         if fingers(&last.contacts) != fingers(contacts) {
             return None;
         }
-        let turned = last.contacts.iter().zip(contacts).zip(&last.grip.forces).map(|((old, new), force)| {
-            Rotation::rotation_between(&old.n, &new.n).map_or(*force, |turn| turn * force)
-        });
-        let mut forces: Vec<Vec3> = turned.collect();
-        residual_forces(contacts, &forces, &self.weight)?
-            .iter()
-            .zip(&mut forces)
-            .for_each(|(change, force)| *force -= change);
-        let margin = margin(contacts, &forces, self.mu);
+        let turned =
+            last.contacts.iter().zip(contacts).zip(&last.grip.forces).map(|((old, new), exerted)| {
+                let turn = Rotation::rotation_between(&old.n, &new.n).unwrap_or_else(Rotation::identity);
+                ContactForce { force: turn * exerted.force, spin: exerted.spin }
+            });
+        let turned: Vec<ContactForce> = turned.collect();
+        let forces = balanced(contacts, &turned, &self.friction, &self.weight)?;
+        let margin = margin(contacts, &forces, &self.friction);
         if last.margin <= 0.0 {
             return None;
         }
@@ -124,6 +132,7 @@ impl<'a> Holder<'a> {
                 r: q.X_HO.rotation * (contact.p_OC - self.object.p_OCm),
                 n,
                 columns: (0..joints.len()).map(column).collect(),
+                spins: (0..joints.len()).map(|j| n.dot(&tip.J_w.column(j))).collect(),
                 efforts: joints.iter().map(|joint| joint.effort * self.share).collect(),
             }
         })

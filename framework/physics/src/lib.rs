@@ -1,4 +1,7 @@
-//! Simulates transfers and whole motions in rapier3d: the hand as jointed bodies driven by motors, the object free under gravity.
+//! Chooses grasp forces by a conic program, and simulates transfers and whole motions in rapier3d: the hand as jointed bodies driven by motors,
+//! the object free under gravity.
+//!
+//! [`grasp_forces`] needs no simulator; everything else is behind the feature `rapier`.
 //!
 //! What is simulated:
 //! - each finger as a chain of bodies with the hand's joint axes, in reduced coordinates (no joint can come apart); each joint driven by a motor
@@ -13,23 +16,41 @@
 //!
 //! Deterministic: fixed steps, one thread, no random numbers; the same binary and machine give the same bits.
 
+#[cfg(feature = "rapier")]
 mod border;
 mod error;
+#[cfg(feature = "rapier")]
 mod finger;
+#[cfg(feature = "rapier")]
 mod fixed;
+mod force;
 mod grip;
 mod hold;
+#[cfg(feature = "rapier")]
 mod pace;
+#[cfg(feature = "rapier")]
 mod replay;
+#[cfg(feature = "rapier")]
 mod report;
 mod settings;
+#[cfg(feature = "rapier")]
 mod simulator;
+mod stage;
+#[cfg(feature = "rapier")]
 mod surface;
+#[cfg(feature = "rapier")]
 mod transfer;
 
 pub use error::PhysicsError;
+pub use force::{ContactForce, Friction};
+pub use hold::Held;
+#[cfg(feature = "rapier")]
 pub use pace::Pace;
-pub use replay::{ReplayReport, ReplaySettings, Stage, StageReport, replay};
+#[cfg(feature = "rapier")]
+pub use replay::{ReplayReport, ReplaySettings, StageReport, replay};
+#[cfg(feature = "rapier")]
 pub use report::{Bounds, Failure, Happening, Outcome};
 pub use settings::SimulationSettings;
+pub use stage::{Stage, grasp_forces};
+#[cfg(feature = "rapier")]
 pub use transfer::TransferSimulator;

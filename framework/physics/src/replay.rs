@@ -1,24 +1,14 @@
 //! A whole motion, simulated: does the object arrive?
 
 use crate::fixed::{fixed_shapes, hull};
-use crate::hold::Holder;
+use crate::force::Friction;
+use crate::hold::{Held, Holder};
 use crate::simulator::{Knot, Scene, Simulator};
 use crate::surface::ball_surface;
-use crate::{Bounds, Failure, Happening, Outcome, PhysicsError, SimulationSettings};
-use regrasp_api::{Configuration, FingerIndex, Pose, Problem, angle_between};
+use crate::{Bounds, Failure, Happening, Outcome, PhysicsError, SimulationSettings, Stage};
+use regrasp_api::{FingerIndex, Pose, Problem, angle_between};
 use regrasp_world::World;
 use std::path::Path;
-
-/// One segment of a motion, as the simulation takes it.
-#[derive(Clone, Copy, Debug)]
-pub struct Stage<'a> {
-    /// The states; consecutive stages share their end states.
-    pub states: &'a [Configuration],
-    /// The time of each state (s), from whatever start.
-    pub times: &'a [f64],
-    /// The finger that moves in a regrasp; `None` in a transfer.
-    pub moving: Option<FingerIndex>,
-}
 
 /// How a motion is replayed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,13 +156,14 @@ impl Run<'_> {
     /// The stage's schedule, forces passing over first, up to where no forces hold the object; and the least margin of a grip (N).
     fn knots(&mut self, stage: &Stage<'_>, is_last: bool) -> (Vec<Knot>, f64) {
         let Scene { hand, object, g_H, .. } = self.scene;
-        let mut holder = Holder::new((hand, object, g_H), self.mu, &self.settings.simulation);
+        let mut holder =
+            Holder::new((hand, object, g_H), Friction::point(self.mu), &self.settings.simulation);
         let start = self.clock + self.settings.shift;
         let first = stage.times.first().copied().unwrap_or(0.0);
         let mut least = f64::INFINITY;
         let made = stage.states.iter().zip(stage.times).map_while(|(q, time)| {
-            let holding = stage.moving.map_or(q.holding(), |finger| q.holding().without(finger));
-            let (feed, margin) = holder.efforts(q, holding)?;
+            let holding = stage.holding(q);
+            let Held { efforts: feed, margin, .. } = holder.hold(q, holding)?;
             least = least.min(margin);
             let time = start + (time - first) * self.settings.slowdown;
             Some(Knot { time, X_HO: q.X_HO, joints: q.joints, feed, holding })

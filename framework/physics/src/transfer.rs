@@ -1,6 +1,7 @@
 //! One transfer, simulated.
 
-use crate::hold::Holder;
+use crate::force::Friction;
+use crate::hold::{Held, Holder};
 use crate::pace::Pace;
 use crate::simulator::{Knot, Scene, Simulator};
 use crate::surface::ball_surface;
@@ -36,10 +37,10 @@ impl TransferSimulator {
         mu: f64,
         bounds: &Bounds,
     ) -> Outcome {
-        let mut holder = Holder::new((hand, object, g_H), mu, &self.settings);
+        let mut holder = Holder::new((hand, object, g_H), Friction::point(mu), &self.settings);
         let times = pace.times(hand, states);
         let knot = |(q, &time): (&Configuration, &f64)| {
-            let (feed, margin) = holder.efforts(q, q.holding())?;
+            let Held { efforts: feed, margin, .. } = holder.hold(q, q.holding())?;
             if margin <= 0.0 {
                 return None;
             }
