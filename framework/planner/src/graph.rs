@@ -50,6 +50,11 @@ impl Graph {
         &self.nodes[node.0 as usize]
     }
 
+    /// The configurations of all nodes, by number.
+    pub fn nodes(&self) -> &[Configuration] {
+        &self.nodes
+    }
+
     /// How many nodes.
     pub fn node_count(&self) -> usize {
         self.nodes.len()
@@ -68,6 +73,11 @@ impl Graph {
     /// Whether an edge of this kind was tried, in either direction.
     pub fn was_tried(&self, a: NodeId, b: NodeId, kind: EdgeKind) -> bool {
         self.tried.contains(&(a.min(b), a.max(b), kind))
+    }
+
+    /// All that was tried: two nodes, the smaller number first, and the kind of edge; in no order.
+    pub fn tried(&self) -> impl Iterator<Item = (NodeId, NodeId, EdgeKind)> {
+        self.tried.iter().copied()
     }
 
     /// Adds an edge and joins the components of its ends.

@@ -16,6 +16,7 @@ mod error;
 mod graph;
 mod order;
 mod query;
+mod record;
 mod report;
 mod search;
 mod session;
@@ -25,6 +26,7 @@ mod steps;
 
 pub use admissible::Leavable;
 pub use error::{End, PlanError};
+pub use record::{EdgeRecord, Fate, GraphRecord};
 pub use report::{Clock, Outcome, Progress, Silent, Status, Stuck};
 pub use session::Drivers;
 pub use solve::{Request, solve};

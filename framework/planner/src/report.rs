@@ -1,5 +1,6 @@
 //! What a run hands back, and what it tells while it runs.
 
+use crate::GraphRecord;
 use regrasp_api::Tally;
 use regrasp_plan::{Motion, Statistics};
 use serde::{Deserialize, Serialize};
@@ -51,7 +52,7 @@ pub enum Stuck {
 }
 
 /// What a run hands back.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Outcome {
     /// How it ended.
     pub status: Status,
@@ -65,6 +66,8 @@ pub struct Outcome {
     pub statistics: Statistics,
     /// Calls and rejections by cause.
     pub tally: Tally,
+    /// The manipulation graph at the end.
+    pub graph: GraphRecord,
     /// What the user should know.
     pub warnings: Vec<String>,
 }

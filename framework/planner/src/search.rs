@@ -37,6 +37,8 @@ pub(crate) struct Search<'a> {
     /// Samples anywhere, counted apart: those drawn ahead must not change their numbers when nodes are extended in between.
     pub explored: usize,
     pub samples: usize,
+    /// The edges of the way that was found.
+    pub used: Vec<EdgeId>,
 }
 
 type Sample = Counted<Result<Option<Configuration>, CallError>>;
@@ -253,6 +255,7 @@ impl Search<'_> {
                 }
             }
         }
+        self.used = path.iter().map(|step| step.edge).collect();
         Ok(Some(self.assemble(&path)))
     }
 

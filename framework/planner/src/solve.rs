@@ -5,16 +5,18 @@ use crate::draft::{Draft, Mark, regrasps};
 use crate::endpoints::{self, Finder};
 use crate::error::{End, PlanError};
 use crate::graph::Graph;
+use crate::record::GraphRecord;
 use crate::report::{Clock, Outcome, Progress, Status, Stuck};
 use crate::search::Search;
 use crate::session::{Call, Drivers, Session, leg_task};
 use crate::smooth::Smoother;
 use regrasp_api::{
-    Admissible, CallError, Clearance, Configuration, ContactModel, FingerGrasp, FingerSet, GuardedService,
-    Hand, Interrupt, NodeId, ObjectModel, Pose, PoseDescription, Problem, StabilityTest, SurfaceParam, Tally,
-    Task, Vec3, unless_fault,
+    Admissible, CallError, Clearance, Configuration, ContactModel, EdgeId, FingerGrasp, FingerSet,
+    GuardedService, Hand, Interrupt, NodeId, ObjectModel, Pose, PoseDescription, Problem, StabilityTest,
+    SurfaceParam, Tally, Task, Vec3, unless_fault,
 };
 use regrasp_plan::{Motion, Segment, Statistics, TimingLimits, assign_times, plugin_statistics};
+use std::collections::BTreeSet;
 
 /// How many grasps are looked for at a goal given by its pose alone before the search starts: a grasp costs a hundredth of a plan,
 /// and of the paper's problems all need fewer nodes, regrasps and instructions with six than with two or twelve.
@@ -88,6 +90,8 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
         statistics: Statistics::default(),
         tally: Tally::default(),
         warnings: Vec::new(),
+        ends: Vec::new(),
+        used: BTreeSet::new(),
     };
     let ended = run.legs();
     run.finish(ended)
@@ -155,6 +159,9 @@ struct Run<'a> {
     statistics: Statistics,
     tally: Tally,
     warnings: Vec<String>,
+    /// For the record of the graph: the nodes of start and goals, and the edges of the ways found.
+    ends: Vec<(End, NodeId)>,
+    used: BTreeSet<EdgeId>,
 }
 
 impl Run<'_> {
@@ -162,6 +169,7 @@ impl Run<'_> {
         let grasp = self.request.problem.start.grasp.as_deref();
         let (start, _) = self.timed("endpoints", |run| run.end(End::Start, run.poses[0], grasp))?;
         let mut node = *start.first().ok_or(Halt::Stuck(Stuck::StartGrasp))?;
+        self.ends.push((End::Start, node));
         for leg in 0..self.request.problem.goal.len() {
             node = self.leg(leg, node)?;
         }
@@ -208,9 +216,12 @@ impl Run<'_> {
             generated: 0,
             explored: 0,
             samples: 0,
+            used: Vec::new(),
         };
         let found = search.run();
         self.statistics.generated_nodes += search.generated;
+        self.used.extend(search.used);
+        self.ends.extend(search.goals.iter().map(|&goal| (End::Goal(leg), goal)));
         found
     }
 
@@ -268,8 +279,9 @@ impl Run<'_> {
         self.statistics.transfers = motion.segments.len() - self.statistics.regrasps;
         self.statistics.plugins = plugin_statistics(&self.tally);
         let goal_ends = self.draft.marks.iter().map(|mark| mark.boundary).collect();
-        let Self { statistics, tally, warnings, .. } = self;
-        Ok(Outcome { status, stuck, motion, goal_ends, statistics, tally, warnings })
+        let Self { statistics, tally, warnings, graph, ends, used, .. } = self;
+        let graph = GraphRecord::new(graph, ends, used);
+        Ok(Outcome { status, stuck, motion, goal_ends, statistics, tally, graph, warnings })
     }
 
     fn count_graph(&mut self) {
