@@ -23,6 +23,17 @@ pub(crate) struct Chain {
     pub(crate) p_LTip: Vec3,
     /// Index of its first joint among all joints.
     pub(crate) first: usize,
+    /// The joints that others drive.
+    pub(crate) driven: Vec<Driven>,
+}
+
+/// A joint that another one of its finger drives: q[joint] = multiplier · q[driver] + offset.
+#[derive(Debug)]
+pub(crate) struct Driven {
+    pub(crate) joint: usize,
+    pub(crate) driver: usize,
+    pub(crate) multiplier: f64,
+    pub(crate) offset: f64,
 }
 
 /// One joint and its limits.
@@ -80,7 +91,8 @@ impl Chain {
         }
         let mut joints = finger.joint.iter().map(Joint::new).collect::<Result<Vec<_>, _>>()?;
         joints[0].X_PJ = X_HBase * joints[0].X_PJ;
-        Ok(Self { joints, p_LTip, first })
+        let driven = driven(finger)?;
+        Ok(Self { joints, p_LTip, first, driven })
     }
 
     /// The frames of all links in H, base to tip.
@@ -114,6 +126,22 @@ impl Chain {
         }
         levers
     }
+}
+
+fn driven(finger: &FingerDescription) -> Result<Vec<Driven>, String> {
+    let mut driven = Vec::new();
+    for (joint, description) in finger.joint.iter().enumerate() {
+        let Some(mimic) = &description.mimic else { continue };
+        let driver = finger.joint.iter().position(|other| other.name == mimic.joint && other.mimic.is_none());
+        let (multiplier, offset) = (mimic.multiplier, mimic.offset);
+        match driver {
+            Some(driver) if multiplier.is_finite() && offset.is_finite() => {
+                driven.push(Driven { joint, driver, multiplier, offset });
+            }
+            _ => return Err(format!("joint `{}`: its `mimic` makes no sense", description.name)),
+        }
+    }
+    Ok(driven)
 }
 
 impl Joint {

@@ -45,6 +45,25 @@ pub(crate) fn joint_limits(hand: &Chains, legs: &[Leg<'_>]) -> Check {
     gauge.check()
 }
 
+/// Driven joints are where their drivers have them; between states they are because all move linearly. `None` for a hand without such joints.
+pub(crate) fn driven_joints(hand: &Chains, legs: &[Leg<'_>]) -> Option<Check> {
+    hand.fingers.iter().any(|chain| !chain.driven.is_empty()).then(|| {
+        let mut gauge = Gauge::new("driven-joints", "rad", Side::AtMost, ROUNDING);
+        for leg in legs {
+            for (k, state) in leg.states.iter().enumerate() {
+                for (chain, driven) in hand.fingers.iter().flat_map(|c| c.driven.iter().map(move |d| (c, d)))
+                {
+                    let q = &state.joints[chain.first..];
+                    let wanted = driven.multiplier * q[driven.driver] + driven.offset;
+                    let place = || joint_place(hand, leg, k, chain.first + driven.joint);
+                    gauge.note((q[driven.joint] - wanted).abs(), place);
+                }
+            }
+        }
+        gauge.check()
+    })
+}
+
 fn joint_place(hand: &Chains, leg: &Leg<'_>, state: usize, joint: usize) -> Place {
     let (finger, joint) = hand.owner(joint);
     Place { finger: Some(finger), joint: Some(joint), ..leg.at(state) }

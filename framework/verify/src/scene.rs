@@ -110,10 +110,14 @@ impl Scene {
 
     fn pair_up(&mut self, problem: &Problem, hand: &Chains) -> Result<(), String> {
         let mounted = self.mounted(problem, hand)?;
+        let touching = touching(&problem.hand)?;
         for a in 0..self.bodies.len() {
             for b in a + 1..self.bodies.len() {
                 let (first, second) = (self.bodies[a].body, self.bodies[b].body);
                 let by_construction = first == Body::Palm && mounted.contains(&second);
+                let by_construction = by_construction
+                    || touching.contains(&(first, second))
+                    || touching.contains(&(second, first));
                 if may_not_touch(first, second, &problem.hand) && !by_construction {
                     self.pairs.push((a, b));
                 }
@@ -172,6 +176,14 @@ impl Scene {
         let angle = regrasp_api::angle_between(&from.rotation, &to.rotation);
         (to.translation.vector - from.translation.vector).norm() + angle * self.object_reach
     }
+}
+
+/// The pairs that the hand's description says touch by construction.
+fn touching(hand: &HandDescription) -> Result<Vec<(Body, Body)>, String> {
+    let body = |name: &String| {
+        hand.body_named(name).ok_or_else(|| format!("`touching`: `{name}` is not the name of one body"))
+    };
+    hand.touching.iter().map(|[a, b]| Ok((body(a)?, body(b)?))).collect()
 }
 
 /// A joint at rest moves nothing, however far its link reaches.

@@ -23,6 +23,7 @@ use std::path::Path;
 /// | `quaternions` | orientations have norm 1 |
 /// | `times`, `velocities`, `accelerations` | times increase; each joint's rates stay within its limits, as `regrasp_plan::assign_times` defines them |
 /// | `joint-limits` | each joint stays within its limits |
+/// | `driven-joints` | joints that others drive (`mimic`) are where their drivers have them; only for hands that have such joints |
 /// | `continuity` | consecutive segments share their end states exactly |
 /// | `rest` | in a regrasp the object and all fingers but one rest exactly |
 /// | `contacts` | no finger starts or stops holding within a segment, but the one that a regrasp moves; resting contacts do not change |
@@ -188,6 +189,7 @@ impl Walk<'_> {
         checks.push(motion_checks::times(self.legs));
         checks.extend(motion_checks::rates(self.hand, self.legs));
         checks.push(motion_checks::joint_limits(self.hand, self.legs));
+        checks.extend(motion_checks::driven_joints(self.hand, self.legs));
         checks.push(motion_checks::continuity(self.legs));
         checks.push(motion_checks::rest(self.hand, self.legs));
         checks.push(motion_checks::contacts(self.hand, self.legs));

@@ -28,8 +28,10 @@ pub(crate) struct FingerBodies {
     pub parts: Vec<Part>,
     /// Pairs of parts of this finger that may not touch.
     pub pairs: Vec<(usize, usize)>,
-    /// The parts before this one touch the palm by construction.
-    first_off_palm: usize,
+    /// For each part whether it touches the palm by construction.
+    on_palm: Vec<bool>,
+    /// Whether any part touches another finger by construction.
+    on_others: bool,
 }
 
 /// Where the solids of a finger are, at some joint positions.
@@ -59,7 +61,9 @@ impl FingerBodies {
         let ball = Placed::rod(Rod::ball(p_LF, hand.fingertip_radius()));
         parts.push(Part { body: Body::Fingertip(finger), link: last, placed: ball });
         let pairs = compared_pairs(hand, finger, &parts);
-        Ok(Self { hand: hand.clone(), finger, parts, pairs, first_off_palm: 0 })
+        let on_palm = parts.iter().map(|part| hand.touching(Body::Palm, part.body)).collect();
+        let on_others = hand.touches_other_finger(finger);
+        Ok(Self { hand: hand.clone(), finger, parts, pairs, on_palm, on_others })
     }
 
     /// The largest radius of a part's rod (m).
@@ -75,7 +79,7 @@ impl FingerBodies {
         let palm = || fixed.iter().filter(|fixed| fixed.body == Body::Palm);
         let touches = |part| palm().any(|fixed| !self.part_clear_of_fixed(&rest, part, fixed, clear));
         if matches!(base, Body::Link(..)) && (0..count).any(touches) {
-            self.first_off_palm = count;
+            self.on_palm[..count].fill(true);
         }
     }
 
@@ -100,7 +104,13 @@ impl FingerBodies {
 
     /// Whether a part and a palm's solid touch by construction.
     pub fn by_construction(&self, part: usize, fixed: &Fixed) -> bool {
-        fixed.body == Body::Palm && part < self.first_off_palm
+        fixed.body == Body::Palm && self.on_palm[part]
+    }
+
+    /// Whether a part and a part of another finger touch by construction.
+    #[inline]
+    pub fn touches_other(&self, part: usize, other: &Self, other_part: usize) -> bool {
+        self.on_others && self.hand.touching(self.parts[part].body, other.parts[other_part].body)
     }
 
     /// Against one solid of palm or obstacles.
@@ -177,7 +187,8 @@ pub(crate) fn clear_of_each_other(
     (b, placed_b): (&FingerBodies, &PlacedFinger),
     clear: f64,
 ) -> Result<(), BodyPair> {
-    let pairs = (0..a.parts.len()).flat_map(|i| (0..b.parts.len()).map(move |j| (i, j)));
+    let all = (0..a.parts.len()).flat_map(|i| (0..b.parts.len()).map(move |j| (i, j)));
+    let pairs = all.filter(|&(i, j)| !a.touches_other(i, b, j));
     refused(pairs, |&(i, j)| clear_parts((a, placed_a, i), (b, placed_b, j), clear))
         .map_err(|(i, j)| ordered(a.parts[i].body, b.parts[j].body))
 }
@@ -216,6 +227,7 @@ fn compared_pairs(hand: &ChainHand, finger: FingerIndex, parts: &[Part]) -> Vec<
         (Body::Link(_, link), _) => Some(usize::from(link)) != last_link,
         _ => false,
     };
+    let apart = |i: usize, j: usize| apart(i, j) && !hand.touching(parts[i].body, parts[j].body);
     (0..parts.len())
         .flat_map(|i| (i + 1..parts.len()).map(move |j| (i, j)))
         .filter(|&(i, j)| apart(i, j))

@@ -63,7 +63,13 @@ pub(super) fn distances(scene: &SceneClearance, q: &Configuration, limit: f64) -
             if !(holds && matches!(item.body, Body::Fingertip(_))) {
                 table.compare(item, &object);
             }
-            fingers[f + 1..].iter().flatten().for_each(|other| table.compare(item, other));
+            for (g, others) in fingers.iter().enumerate().skip(f + 1) {
+                let compared = others
+                    .iter()
+                    .enumerate()
+                    .filter(|(j, _)| !bodies.touches_other(part, &scene.fingers[g], *j));
+                compared.for_each(|(_, other)| table.compare(item, other));
+            }
         }
         bodies.pairs.iter().for_each(|&(i, j)| table.compare(&items[i], &items[j]));
     }

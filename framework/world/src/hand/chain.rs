@@ -1,5 +1,6 @@
 //! One finger as a chain of joints: forward kinematics, frames of the links, Jacobians.
 
+use super::coupling::{self, Coupling};
 use super::screw::Screw;
 use nalgebra::{Isometry3, Rotation3, Translation3};
 use regrasp_api::{
@@ -100,6 +101,8 @@ pub(super) struct FingerChain {
     pub screws: Vec<Screw>,
     /// The fingertip's centre in H, all joints at 0 (m).
     pub p_HF0: Vec3,
+    /// The joints that others drive; whatever positions they are given, they are taken to be where their drivers have them.
+    pub couplings: Vec<Coupling>,
 }
 
 impl FingerChain {
@@ -117,6 +120,7 @@ impl FingerChain {
             p_LF: finger.tip.into(),
             screws: Vec::new(),
             p_HF0: Vec3::zeros(),
+            couplings: Vec::new(),
         };
         let zero = FingerJoints::zeros(chain.steps.len());
         let mut room = LinkFrame::room();
@@ -128,12 +132,15 @@ impl FingerChain {
             .collect();
         chain.p_HF0 = frames.last().unwrap_or(&chain.X_HB).point(&chain.p_LF);
         chain.screws = screws;
+        // Only now: the screws are those of joints that all stand at 0.
+        chain.couplings = coupling::couplings(finger);
         chain
     }
 
     /// The frames of all links, base to tip.
     #[inline]
     pub fn frames<'a>(&self, joints: &FingerJoints, room: &'a mut LinkFrames) -> &'a [LinkFrame] {
+        let joints = &self.settled(joints);
         let mut X_HL = self.X_HB;
         for ((step, &q), frame) in self.steps.iter().zip(joints.iter()).zip(room.iter_mut()) {
             X_HL = step.frame(&X_HL, q);
@@ -145,10 +152,19 @@ impl FingerChain {
     /// The fingertip's centre in H (m).
     #[inline]
     pub fn tip_center(&self, joints: &FingerJoints) -> Vec3 {
+        let joints = &self.settled(joints);
         self.screws.iter().zip(joints.iter()).rev().fold(self.p_HF0, |p, (screw, &q)| screw.move_point(&p, q))
     }
 
-    /// Centre, orientation and Jacobians of the fingertip.
+    /// The joints, with the driven ones where their drivers have them.
+    #[inline]
+    fn settled(&self, joints: &FingerJoints) -> FingerJoints {
+        let mut joints = *joints;
+        coupling::settle(&self.couplings, &mut joints);
+        joints
+    }
+
+    /// Centre, orientation and Jacobians of the fingertip; the columns of driven joints are zero, their drivers' hold what both do.
     pub fn tip_kinematics(&self, joints: &FingerJoints) -> TipKinematics {
         let mut room = LinkFrame::room();
         let frames = self.frames(joints, &mut room);
@@ -165,6 +181,8 @@ impl FingerChain {
                 JointKind::Prismatic => J_v.set_column(k, &axis_H),
             }
         }
+        coupling::fold(&self.couplings, &mut J_v);
+        coupling::fold(&self.couplings, &mut J_w);
         TipKinematics { p_HF, R_HF: rotation(&X_HL.R_HL), J_v, J_w }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::HandError;
 use regrasp_api::{
-    FingerDescription, HandDescription, JointDescription, JointKind, MAX_FINGER_JOINTS, MAX_FINGERS,
-    PlacedShape, Pose, PoseDescription, Shape, Vec3,
+    BodyPair, FingerDescription, HandDescription, JointDescription, JointKind, MAX_FINGER_JOINTS,
+    MAX_FINGERS, Mimic, PlacedShape, Pose, PoseDescription, Shape, Vec3,
 };
 
 /// Radii that a fingertip may have (m).
@@ -56,6 +56,13 @@ fn check_finger(key: &str, finger: &FingerDescription) -> Result<FingerPoses, Ha
         return Err(HandError::NotFinite { key: format!("{key}.tip"), value: finger.tip });
     }
     check_rest(key, finger)?;
+    for (index, joint) in finger.joint.iter().enumerate() {
+        if let Some(mimic) = &joint.mimic {
+            check_mimic(&format!("{key}.joint[{index}]"), mimic, joint, finger)?;
+            let expected = mimic_position(mimic, finger, &finger.rest);
+            check_driven(&format!("{key}.rest[{index}]"), finger.rest[index], expected)?;
+        }
+    }
     Ok(FingerPoses { X_HB, origins })
 }
 
@@ -94,6 +101,57 @@ fn check_rest(key: &str, finger: &FingerDescription) -> Result<(), HandError> {
         check_range(&format!("{key}.rest[{index}]"), q, (joint.lower, joint.upper), hint)?;
     }
     Ok(())
+}
+
+/// How far (rad; m) a driven joint may be from where its driver has it, and beyond its limits.
+const DRIVEN: f64 = 1e-9;
+
+/// Where the driver, if the finger has it, puts a driven joint.
+fn mimic_position(mimic: &Mimic, finger: &FingerDescription, joints: &[f64]) -> f64 {
+    let driver = finger.joint.iter().position(|joint| joint.name == mimic.joint);
+    mimic.multiplier * driver.map_or(0.0, |driver| joints[driver]) + mimic.offset
+}
+
+fn check_driven(key: &str, value: f64, expected: f64) -> Result<(), HandError> {
+    let hint = "; the joint has a `mimic` and rests where its driver has it";
+    check_range(key, value, (expected - DRIVEN, expected + DRIVEN), hint)
+}
+
+/// The driver must be another joint of the finger that moves by itself, and may not push the driven joint beyond its limits.
+fn check_mimic(
+    key: &str,
+    mimic: &Mimic,
+    joint: &JointDescription,
+    finger: &FingerDescription,
+) -> Result<(), HandError> {
+    let driver = finger.joint.iter().find(|driver| driver.name == mimic.joint && driver.mimic.is_none());
+    let Some(driver) = driver else {
+        let name = mimic.joint.clone();
+        return Err(HandError::Driver { key: format!("{key}.mimic.joint"), name });
+    };
+    check_range(&format!("{key}.mimic.multiplier"), mimic.multiplier, (-100.0, 100.0), "")?;
+    check_range(&format!("{key}.mimic.offset"), mimic.offset, (-MAX_TRAVEL, MAX_TRAVEL), DEGREES)?;
+    let range = (joint.lower - DRIVEN, joint.upper + DRIVEN);
+    for (end, position) in [("lower", driver.lower), ("upper", driver.upper)] {
+        let driven = mimic.multiplier * position + mimic.offset;
+        if !(range.0..=range.1).contains(&driven) {
+            let (key, driver) = (key.into(), driver.name.clone());
+            let limits = (joint.lower, joint.upper);
+            return Err(HandError::DrivenTooFar { key, driver, end, driven, limits });
+        }
+    }
+    Ok(())
+}
+
+/// The bodies that touch by construction; each name must be that of one body.
+pub(super) fn check_touching(hand: &HandDescription) -> Result<Vec<BodyPair>, HandError> {
+    let body = |pair: usize, side: usize| {
+        let name = &hand.touching[pair][side];
+        let unknown =
+            || HandError::NoSuchBody { key: format!("touching[{pair}][{side}]"), name: name.clone() };
+        hand.body_named(name).ok_or_else(unknown)
+    };
+    (0..hand.touching.len()).map(|pair| Ok((body(pair, 0)?, body(pair, 1)?))).collect()
 }
 
 /// Fingers' names must differ among each other, joints' names over the whole hand (exports need that).

@@ -92,6 +92,43 @@ pub enum HandError {
         /// Path of the key that has the name already.
         first: String,
     },
+    /// A `mimic` names no joint that could drive.
+    #[error(
+        "`{key}` = \"{name}\" must name another joint of the same finger, one without a `mimic` of its own"
+    )]
+    Driver {
+        /// Path of the key, such as `finger[1].joint[2].mimic.joint`.
+        key: String,
+        /// The name given.
+        name: String,
+    },
+    /// A driver takes its driven joint beyond the limits.
+    #[error(
+        "`{key}.mimic`: at the {end} limit of \"{driver}\" the joint stands at {driven}, outside its own limits {}..={}; narrow the limits of \"{driver}\"",
+        limits.0, limits.1
+    )]
+    DrivenTooFar {
+        /// Path of the driven joint, such as `finger[1].joint[2]`.
+        key: String,
+        /// The driver's name.
+        driver: String,
+        /// `lower` or `upper`.
+        end: &'static str,
+        /// Where the driven joint would stand.
+        driven: f64,
+        /// Its limits.
+        limits: (f64, f64),
+    },
+    /// `touching` names a body that there is not, or that is not the only one of that name.
+    #[error(
+        "`{key}` = \"{name}\" must be `palm`, a joint (for the link behind it) or a finger (for its tip), and no two of these"
+    )]
+    NoSuchBody {
+        /// Path of the key, such as `touching[0][1]`.
+        key: String,
+        /// The name given.
+        name: String,
+    },
     /// A finger that cannot place its tip freely in space.
     #[error(
         "finger \"{finger}\" (`{key}`) has {independent} independent joints, at least three are needed: its tip must be able to move in all directions; add a joint or change an axis"

@@ -10,6 +10,7 @@
 //! | Which joints put the tip there? | `inverse/mod.rs` |
 //! | ... for abduction and two flexions, in closed form | `inverse/parallel.rs` |
 //! | ... for any three joints, numerically | `inverse/numeric.rs` |
+//! | Which joints do others drive? | `coupling.rs` |
 //! | Which three joints are solved for, which are spare? | `inverse/spare.rs` |
 //! | What remains of a finger while its spare joints stand still? | `inverse/triple.rs` |
 //! | Does an angle fit a joint's limits? | `inverse/range.rs` |
@@ -28,7 +29,7 @@
 //! - Three revolute joints, the last two or the first two parallel: closed form. All solutions are found (up to four); the axes
 //!   may meet or not and stand at any angle.
 //! - Three prismatic joints: closed form; the solution is unique.
-//! - Anything else: Levenberg-Marquardt from `near`, then from ten fixed other starts. It may miss a solution, never
+//! - A finger with a joint that another drives, and anything else: Levenberg-Marquardt from `near`, then from ten fixed other starts. It may miss a solution, never
 //!   invent one.
 //!
 //! A solution within 1e-10 (rad; m) of a limit is moved onto it. "Closest to `near`" means the smallest sum of squared
@@ -36,6 +37,7 @@
 
 mod chain;
 mod check;
+mod coupling;
 mod error;
 mod inverse;
 mod reach;
@@ -48,8 +50,8 @@ use chain::FingerChain;
 use check::FingerPoses;
 use inverse::{Inverse, JointRange};
 use regrasp_api::{
-    FingerDescription, FingerIndex, FingerJoints, FingerModel, Hand, HandDescription, JointModel,
-    PlacedShape, TipKinematics, Vec3,
+    Body, BodyPair, FingerDescription, FingerIndex, FingerJoints, FingerModel, Hand, HandDescription,
+    JointModel, PlacedShape, TipKinematics, Vec3,
 };
 
 /// A hand whose fingers are serial chains of revolute or prismatic joints.
@@ -73,6 +75,8 @@ use regrasp_api::{
 pub struct ChainHand {
     description: HandDescription,
     fingers: Vec<Finger>,
+    /// Pairs that touch by construction.
+    touching: Vec<BodyPair>,
 }
 
 /// What is prepared for one finger.
@@ -94,7 +98,8 @@ impl ChainHand {
             .enumerate()
             .map(|(index, (finger, poses))| Finger::new(index, finger, poses))
             .collect::<Result<_, _>>()?;
-        Ok(Self { description, fingers })
+        let touching = check::check_touching(&description)?;
+        Ok(Self { description, fingers, touching })
     }
 
     /// The description that the hand was made from.
@@ -130,6 +135,22 @@ impl ChainHand {
         self.fingers[finger.index()].inverse.is_closed_form()
     }
 
+    /// Whether the description says that two bodies of the hand touch by construction.
+    pub fn touching(&self, a: Body, b: Body) -> bool {
+        self.touching.contains(&(a, b)) || self.touching.contains(&(b, a))
+    }
+
+    /// Whether some body of the finger touches one of another finger by construction.
+    pub(crate) fn touches_other_finger(&self, finger: FingerIndex) -> bool {
+        let owner = |body: Body| match body {
+            Body::Link(finger, _) | Body::Fingertip(finger) => Some(finger),
+            _ => None,
+        };
+        let ends = self.touching.iter().map(|&(a, b)| (owner(a), owner(b)));
+        ends.filter(|(a, b)| a.is_some() && b.is_some() && a != b)
+            .any(|(a, b)| a == Some(finger) || b == Some(finger))
+    }
+
     /// The shapes of the palm, in the hand's frame.
     pub fn palm_shapes(&self) -> &[PlacedShape] {
         &self.description.palm
@@ -156,10 +177,12 @@ impl Finger {
             }
         })?;
         let (p_HReach, reach) = reach::reach_ball(&chain.screws, &chain.p_HF0, &ranges);
+        let is_spare =
+            |joint: usize| !inverse.solved().contains(&joint) && finger.joint[joint].mimic.is_none();
         let model = FingerModel {
             name: finger.name.clone(),
             joints: finger.joint.iter().map(joint_model).collect(),
-            spare: (0..ranges.len()).filter(|joint| !inverse.solved().contains(joint)).collect(),
+            spare: (0..ranges.len()).filter(|&joint| is_spare(joint)).collect(),
             rest,
             p_HReach,
             reach,
@@ -211,5 +234,9 @@ impl Hand for ChainHand {
             return None;
         }
         inverse.solve(chain, p_HF, near)
+    }
+
+    fn settle(&self, finger: FingerIndex, joints: &mut FingerJoints) {
+        coupling::settle(&self.fingers[finger.index()].chain.couplings, joints);
     }
 }

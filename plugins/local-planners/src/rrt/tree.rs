@@ -37,6 +37,7 @@ fn random_posture(flight: &Flight<'_>, random: &mut Random) -> FingerJoints {
     let joints = &flight.task.hand.finger(flight.finger).joints;
     let mut posture = FingerJoints::zeros(joints.len());
     posture.iter_mut().zip(joints).for_each(|(q, joint)| *q = random.range(joint.lower, joint.upper));
+    flight.task.hand.settle(flight.finger, &mut posture);
     posture
 }
 

@@ -170,6 +170,7 @@ impl ProjectionSampler {
             }
             joints[i] = random.range(lower, upper);
         }
+        task.hand.settle(finger, &mut joints);
         joints
     }
 }

@@ -142,6 +142,7 @@ impl Newton<'_> {
                 let step = at.by_joints[(finger.index(), i)] * y[finger.index()];
                 *value = (*value + step / self.joint_length(joint.kind)).clamp(joint.lower, joint.upper);
             }
+            self.task.hand.settle(finger, &mut next.joints[finger]);
         }
         Some(next)
     }

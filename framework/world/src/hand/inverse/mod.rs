@@ -11,6 +11,7 @@ pub(super) use spare::Conditioning;
 pub(super) use triple::Triple;
 
 use super::chain::FingerChain;
+use super::coupling;
 use nalgebra::Matrix3;
 use parallel::{Lone, Parallel};
 use regrasp_api::{FingerJoints, JointKind, Vec3};
@@ -62,7 +63,7 @@ impl Inverse {
             rest: solved.map(|joint| rest[joint]),
             prepared: None,
         };
-        if rest.len() == 3 {
+        if rest.len() == 3 && chain.couplings.is_empty() {
             inverse.prepared = inverse.solver(Triple::new(chain, &solved, rest));
         }
         Ok(inverse)
@@ -93,6 +94,7 @@ impl Inverse {
     #[inline]
     pub fn solve(&self, chain: &FingerChain, p_HF: &Vec3, near: &FingerJoints) -> Option<FingerJoints> {
         let found = match &self.prepared {
+            _ if !chain.couplings.is_empty() => self.solve_coupled(chain, p_HF, near)?,
             Some(solver) => self.run(solver, p_HF, near)?,
             None => self.run(&self.solver(Triple::new(chain, &self.solved, near))?, p_HF, near)?,
         };
@@ -100,7 +102,20 @@ impl Inverse {
         for (&joint, q) in self.solved.iter().zip(found) {
             joints[joint] = q;
         }
+        coupling::settle(&chain.couplings, &mut joints);
         Some(joints)
+    }
+
+    /// Levenberg-Marquardt on the whole chain: a driven joint moves with its driver, so no three screws tell the motion.
+    fn solve_coupled(&self, chain: &FingerChain, p_HF: &Vec3, near: &FingerJoints) -> Option<[f64; 3]> {
+        let tip_jacobian = |q: &[f64; 3]| {
+            let mut joints = *near;
+            self.solved.iter().zip(q).for_each(|(&joint, &q)| joints[joint] = q);
+            let tip = chain.tip_kinematics(&joints);
+            (tip.p_HF, Matrix3::from_columns(&self.solved.map(|joint| tip.J_v.column(joint).into_owned())))
+        };
+        let near = self.solved.map(|joint| near[joint]);
+        numeric::solve(&tip_jacobian, p_HF, &self.ranges, &near, &self.rest)
     }
 
     #[inline]
@@ -112,7 +127,9 @@ impl Inverse {
                 let q = inverse * (p - p0);
                 Some([self.ranges[0].fit(q.x)?, self.ranges[1].fit(q.y)?, self.ranges[2].fit(q.z)?])
             }
-            Solver::Numeric(triple) => numeric::solve(triple, p, &self.ranges, &near, &self.rest),
+            Solver::Numeric(triple) => {
+                numeric::solve(&|q| triple.tip_jacobian(q), p, &self.ranges, &near, &self.rest)
+            }
         }
     }
 }

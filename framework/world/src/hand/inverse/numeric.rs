@@ -1,6 +1,6 @@
 //! Numeric inverse kinematics for chains without a closed form.
 
-use super::{Choice, JointRange, Triple};
+use super::{Choice, JointRange};
 use nalgebra::{Matrix3, Vector3};
 use regrasp_api::Vec3;
 
@@ -27,20 +27,22 @@ const STARTS: [[f64; 3]; 9] = [
 ///
 /// The solution that continues from `near` if there is one, otherwise the closest to `near` of those that the other starts
 /// (`rest`, the middle of the ranges, eight spread points) lead to. A solution may be missed, never invented.
+///
+/// `tip_jacobian` gives the tip's place (m) and its velocity per speed of each of the three joints.
 pub(super) fn solve(
-    triple: &Triple,
+    tip_jacobian: &impl Fn(&[f64; 3]) -> (Vec3, Matrix3<f64>),
     p: &Vec3,
     ranges: &[JointRange; 3],
     near: &[f64; 3],
     rest: &[f64; 3],
 ) -> Option<[f64; 3]> {
-    if let Some(q) = descend(triple, p, ranges, near) {
+    if let Some(q) = descend(tip_jacobian, p, ranges, near) {
         return Some(q);
     }
     let mut best = Choice::new(near);
     let spread = STARTS.iter().map(|s| std::array::from_fn(|joint| ranges[joint].at(s[joint])));
     for start in std::iter::once(*rest).chain(spread) {
-        if let Some(q) = descend(triple, p, ranges, &start) {
+        if let Some(q) = descend(tip_jacobian, p, ranges, &start) {
             best.offer(q);
         }
     }
@@ -51,9 +53,14 @@ pub(super) fn solve(
 ///
 /// A joint at a limit that the gradient pushes outward takes no part in the step. Converges quadratically to a regular
 /// solution, as Newton's method does, since the damping vanishes.
-fn descend(triple: &Triple, p: &Vec3, ranges: &[JointRange; 3], start: &[f64; 3]) -> Option<[f64; 3]> {
+fn descend(
+    tip_jacobian: &impl Fn(&[f64; 3]) -> (Vec3, Matrix3<f64>),
+    p: &Vec3,
+    ranges: &[JointRange; 3],
+    start: &[f64; 3],
+) -> Option<[f64; 3]> {
     let mut q: [f64; 3] = std::array::from_fn(|joint| ranges[joint].clamp(start[joint]));
-    let (tip, mut J) = triple.tip_jacobian(&q);
+    let (tip, mut J) = tip_jacobian(&q);
     let mut residual = p - tip;
     let mut error = residual.norm();
     let (mut damping, mut lame) = (1e-3, 0);
@@ -63,7 +70,7 @@ fn descend(triple: &Triple, p: &Vec3, ranges: &[JointRange; 3], start: &[f64; 3]
         }
         let Some(step) = damped_step(&J, &residual, damping, &q, ranges) else { break };
         let trial: [f64; 3] = std::array::from_fn(|joint| ranges[joint].clamp(q[joint] + step[joint]));
-        let (tip, J_trial) = triple.tip_jacobian(&trial);
+        let (tip, J_trial) = tip_jacobian(&trial);
         let residual_trial = p - tip;
         let error_trial = residual_trial.norm();
         if error_trial < error {

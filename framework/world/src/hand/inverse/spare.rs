@@ -87,6 +87,9 @@ fn conditioning(jacobians: &[ScaledJacobian], triple: &[usize; 3]) -> f64 {
 
 /// The method that works wherever the spare joints stand.
 fn common_method(chain: &FingerChain, solved: &[usize; 3], postures: &[FingerJoints]) -> Method {
+    if !chain.couplings.is_empty() {
+        return Method::Numeric;
+    }
     let mut methods = postures.iter().map(|joints| method(&Triple::new(chain, solved, joints)));
     let first = methods.next().unwrap_or(Method::Numeric);
     if methods.all(|other| other == first) { first } else { Method::Numeric }
