@@ -18,7 +18,8 @@ macro_rules! built_in {
 /// The scenarios, the paper's three problems first.
 pub const SCENARIOS: &[BuiltIn] = built_in!(
     "": "sphere", "cubic", "ellip-obst", "sphere-tilt", "sphere-free", "cube-free", "ellipsoid-free",
-    "sphere-points", "sphere-soft", "sphere-five", "ring", "bracket",
+    "sphere-points", "sphere-soft", "sphere-five", "ring", "bracket", "baton",
+    "rgmc-a1-60", "rgmc-a1-80", "rgmc-a1-100", "rgmc-b1",
 );
 
 /// The hands.
