@@ -154,21 +154,10 @@ impl Summary<'_> {
     /// Why there is no plan, what to try, and the rejections by cause.
     pub fn why_no_plan(&self) -> String {
         let outcome = &self.run.outcome;
-        let stuck = match outcome.stuck {
-            Some(Stuck::StartGrasp) => "no admissible grasp was found at the start".to_owned(),
-            Some(Stuck::GoalGrasp(goal)) => format!("no admissible grasp was found at goal {}", goal + 1),
-            Some(Stuck::Search(goal)) => format!("the search for goal {} found no way", goal + 1),
-            None => format!("the search was stopped on the way to goal {}", outcome.goal_ends.len() + 1),
-        };
-        let stopped = match self.run.stopped_by {
-            Some(StoppedBy::TimeLimit) => "no plan within the time limit",
-            Some(StoppedBy::MaxNodes) => "no plan within the budget of nodes",
-            Some(StoppedBy::Interrupt) => "interrupted",
-            None => "no plan",
-        };
+        let reason = self.run.why_not_solved().unwrap_or_default();
         let kept = self.saved.map(|path| format!("; what was reached is kept as `{}`", path.display()));
         let rejections = rejections(&outcome.statistics);
-        format!("{stopped}: {stuck}{}\n{}{rejections}", kept.unwrap_or_default(), self.advice())
+        format!("{reason}{}\n{}{rejections}", kept.unwrap_or_default(), self.advice())
     }
 
     fn advice(&self) -> String {

@@ -12,9 +12,14 @@ pub fn write(path: &Path, plan: &Plan) -> Result<(), WriteError> {
     if let Some(place) = not_finite(&plan.segments) {
         return Err(WriteError::NotFinite { place });
     }
+    write_file(path, |writer| write_json(plan, writer))
+}
+
+/// Writes any file as [`write`] writes plans: `put` gives its content.
+pub fn write_file(path: &Path, put: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), WriteError> {
     let done = match target(path)? {
-        Target::Special => OpenOptions::new().write(true).open(path).and_then(|file| put(plan, &file)),
-        Target::File { path, folder } => replace(&path, &folder, plan),
+        Target::Special => OpenOptions::new().write(true).open(path).and_then(|file| buffered(&file, put)),
+        Target::File { path, folder } => replace(&path, &folder, put),
     };
     done.map_err(|error| write_error(error, path))
 }
@@ -30,6 +35,9 @@ pub fn check_place(path: &Path) -> Result<(), WriteError> {
         }
     }
 }
+
+/// How the names of files begin and end that are being written: those that a killed process left behind may be deleted.
+pub const TEMPORARY: (&str, &str) = (".regrasp-", ".tmp");
 
 /// What a path stands for.
 enum Target {
@@ -69,9 +77,9 @@ fn write_error(error: io::Error, path: &Path) -> WriteError {
     }
 }
 
-fn replace(path: &Path, folder: &Path, plan: &Plan) -> io::Result<()> {
+fn replace(path: &Path, folder: &Path, put: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let file = temporary(folder)?;
-    put(plan, file.as_file())?;
+    buffered(file.as_file(), put)?;
     file.as_file().sync_all()?;
     file.persist(path).map_err(|error| error.error)?;
     Ok(())
@@ -79,7 +87,7 @@ fn replace(path: &Path, folder: &Path, plan: &Plan) -> io::Result<()> {
 
 fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".regrasp-plan-").suffix(".tmp");
+    builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
     #[cfg(unix)]
     {
         // As any new file, less what the user's mask takes away; the default of temporary files is for their owner alone.
@@ -89,9 +97,9 @@ fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-fn put(plan: &Plan, file: &File) -> io::Result<()> {
+fn buffered(file: &File, put: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut buffer = io::BufWriter::new(file);
-    write_json(plan, &mut buffer)?;
+    put(&mut buffer)?;
     buffer.flush()
 }
 

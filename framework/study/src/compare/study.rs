@@ -5,6 +5,7 @@ use crate::scenario::PaperFigures;
 use regrasp_api::{Problem, Slot};
 use regrasp_plan::PluginChoice;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// The version of `study.json` and `runs.jsonl` that this program reads and writes.
@@ -73,7 +74,7 @@ pub struct StudyScenario {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Variant {
-    /// Its name, unique in the study, such as `force-closure, rlg`.
+    /// Its name, unique in the study, such as `force-closure + rlg`.
     pub name: String,
     /// In each slot that is varied and that this variant fills by itself: what it fills it with, in a word or a few, such as `socp` or
     /// `interleaved end=0.8`.
@@ -176,5 +177,109 @@ impl Study {
     pub fn is_left_out(&self, scenario: usize, variant: usize) -> bool {
         let (scenario, variant) = (&self.scenarios[scenario].name, &self.variants[variant].name);
         self.left_out.iter().any(|pair| pair.scenario == *scenario && pair.variant == *variant)
+    }
+
+    /// The runs of the study, or of its shard, in the order of `runs.csv`: by scenario, then variant, then seed.
+    pub fn keys(&self) -> Vec<RunKey> {
+        let pairs = (0..self.scenarios.len()).flat_map(|s| (0..self.variants.len()).map(move |v| (s, v)));
+        let seeds =
+            |(scenario, variant)| self.seeds.iter().map(move |seed| RunKey { scenario, variant, seed });
+        pairs.flat_map(seeds).filter(|key| self.has(*key)).collect()
+    }
+
+    /// Whether a run belongs to the study, and to its shard.
+    pub fn has(&self, key: RunKey) -> bool {
+        let number = key.seed.checked_sub(self.seeds.first).filter(|number| *number < self.seeds.count);
+        let Some(number) = number else { return false };
+        let block = key.scenario as u64 * self.seeds.count + number;
+        self.shard.is_none_or(|shard| block % shard.of == shard.part - 1)
+            && !self.is_left_out(key.scenario, key.variant)
+    }
+
+    /// The name of a scenario as the stem of a file's name: letters, digits, `-`, `_`, `.` alone, and for each scenario another.
+    pub fn file_stem(&self, scenario: usize) -> String {
+        let stem = |scenario: &StudyScenario| -> String {
+            let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' };
+            scenario.name.chars().take(80).map(plain).collect()
+        };
+        let wished = stem(&self.scenarios[scenario]);
+        match self.scenarios[..scenario].iter().any(|other| stem(other) == wished) {
+            true => format!("{wished}.{}", scenario + 1),
+            false => wished,
+        }
+    }
+
+    /// Adds machines that are not in the list.
+    pub(super) fn add_machines(&mut self, machines: impl IntoIterator<Item = Machine>) {
+        for machine in machines {
+            if !self.machines.contains(&machine) {
+                self.machines.push(machine);
+            }
+        }
+    }
+
+    /// What tells this study from another one, in words; `None` where both are the same: the same results but for times.
+    ///
+    /// The command counts for nothing, as there is more than one way to say the same, nor do machines and the time of the beginning.
+    pub fn difference(&self, other: &Self) -> Option<String> {
+        let alike = |study: &Self| {
+            let own = Self { command: Vec::new(), machines: Vec::new(), started_s: 0, ..study.clone() };
+            serde_json::to_value(own).expect("a study is plain data with text keys")
+        };
+        first_difference(&alike(self), &alike(other), "")
+    }
+}
+
+/// The first place where two values differ, and how.
+fn first_difference(a: &Value, b: &Value, path: &str) -> Option<String> {
+    let inner = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+    match (a, b) {
+        _ if a == b => None,
+        (Value::Object(x), Value::Object(y)) => {
+            let keys = x.keys().chain(y.keys().filter(|key| !x.contains_key(*key)));
+            let at = |key: &String| {
+                let of = |map: &serde_json::Map<String, Value>| map.get(key).cloned().unwrap_or_default();
+                first_difference(&of(x), &of(y), &inner(key))
+            };
+            keys.into_iter().find_map(at)
+        }
+        (Value::Array(x), Value::Array(y)) if x.len() == y.len() => x
+            .iter()
+            .zip(y)
+            .enumerate()
+            .find_map(|(i, (x, y))| first_difference(x, y, &format!("{path}[{i}]"))),
+        _ => Some(format!("`{path}` is {} there and {} here", brief(a), brief(b))),
+    }
+}
+
+/// A value in at most 60 characters.
+fn brief(value: &Value) -> String {
+    let text = match value {
+        Value::Null => "absent".to_owned(),
+        Value::Array(items) => format!("a list of {}", items.len()),
+        Value::Object(_) => "a table".to_owned(),
+        value => value.to_string(),
+    };
+    if text.chars().count() <= 60 { text } else { text.chars().take(59).chain(['…']).collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn the_first_difference_is_named_with_both_values() {
+        let a = json!({"seeds": {"count": 20}, "names": ["a", "b"]});
+        let b = json!({"seeds": {"count": 30}, "names": ["a", "b"]});
+        let text = first_difference(&a, &b, "").unwrap();
+        assert_eq!(text, "`seeds.count` is 20 there and 30 here");
+        let c = json!({"seeds": {"count": 20}, "names": ["a", "c"]});
+        assert_eq!(first_difference(&a, &c, "").unwrap(), "`names[1]` is \"b\" there and \"c\" here");
+        let d = json!({"seeds": {"count": 20}, "names": ["a"], "limit": 3});
+        assert!(first_difference(&a, &d, "").unwrap().contains("a list of 2 there and a list of 1 here"));
+        assert_eq!(first_difference(&a, &a, ""), None);
+        let e = json!({"seeds": {"count": 20}, "names": ["a", "b"], "limit": 3});
+        assert_eq!(first_difference(&a, &e, "").unwrap(), "`limit` is absent there and 3 here");
     }
 }

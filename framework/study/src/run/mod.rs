@@ -9,7 +9,7 @@ use crate::scenario::{Scenario, ScenarioError};
 use regrasp_api::{Clearance, GuardedService, Hand, Interrupt, Parts};
 use regrasp_host::{Choices, PluginSet, Registry, Source};
 use regrasp_plan::{Plan, StoppedBy};
-use regrasp_planner::{Clock, Drivers, Outcome, Progress, Request, Status, Stuck};
+use regrasp_planner::{Clock, Drivers, Outcome, PlanError, Progress, Request, Status, Stuck};
 use regrasp_verify::Verdict;
 use regrasp_world::SceneClearance;
 use std::iter;
@@ -76,7 +76,31 @@ impl Run {
             _ => verdict.is_sound(),
         })
     }
+
+    /// What ended the run before its last goal, and where; absent where it is solved.
+    pub fn why_not_solved(&self) -> Option<String> {
+        let outcome = &self.outcome;
+        if outcome.status == Status::Solved {
+            return None;
+        }
+        let stuck = match outcome.stuck {
+            Some(Stuck::StartGrasp) => "no admissible grasp was found at the start".to_owned(),
+            Some(Stuck::GoalGrasp(goal)) => format!("no admissible grasp was found at goal {}", goal + 1),
+            Some(Stuck::Search(goal)) => format!("the search for goal {} found no way", goal + 1),
+            None => format!("the search was stopped on the way to goal {}", outcome.goal_ends.len() + 1),
+        };
+        let stopped = match self.stopped_by {
+            Some(StoppedBy::TimeLimit) => "no plan within the time limit",
+            Some(StoppedBy::MaxNodes) => "no plan within the budget of nodes",
+            Some(StoppedBy::Interrupt) => "interrupted",
+            None => "no plan",
+        };
+        Some(format!("{stopped}: {stuck}"))
+    }
 }
+
+/// The planner, or something around it.
+type Solve<'s> = &'s dyn Fn(&Request<'_>) -> Result<Outcome, PlanError>;
 
 /// A scenario with its plugins built, ready to be planned with any seed.
 pub struct Setup<'a> {
@@ -116,9 +140,19 @@ impl<'a> Setup<'a> {
         &self.choices
     }
 
+    /// The scenario.
+    pub fn scenario(&self) -> &'a Scenario {
+        self.scenario
+    }
+
     /// Plans and verifies.
     pub fn run(&self, options: &RunOptions<'_>) -> Result<Run, RunError> {
-        let run = self.plan_and_verify(options);
+        self.run_by(&regrasp_planner::solve, options)
+    }
+
+    /// Plans with `solve`, which calls the planner with the request or with a changed one, and verifies.
+    pub(crate) fn run_by(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Run, RunError> {
+        let run = self.plan_and_verify(solve, options);
         // A plugin that panicked outside the planner's own calls, say while cones were written down, spoils the whole.
         match regrasp_api::take_fault() {
             Some(fault) => Err(RunError::Call(fault)),
@@ -126,9 +160,9 @@ impl<'a> Setup<'a> {
         }
     }
 
-    fn plan_and_verify(&self, options: &RunOptions<'_>) -> Result<Run, RunError> {
+    fn plan_and_verify(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Run, RunError> {
         let begin = options.clock.seconds();
-        let outcome = self.solve(options)?;
+        let outcome = self.solve(solve, options)?;
         let planned = options.clock.seconds();
         let stopped_by = stopped_by(&outcome, options.stop);
         let (mut plan, mut verdict) = (None, None);
@@ -149,7 +183,7 @@ impl<'a> Setup<'a> {
         })
     }
 
-    fn solve(&self, options: &RunOptions<'_>) -> Result<Outcome, RunError> {
+    fn solve(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Outcome, RunError> {
         let plugins = &self.plugins;
         let (hand, clearance) = (self.hand(), &self.clearance as &dyn Clearance);
         let guarded = (GuardedService(hand), GuardedService(clearance));
@@ -174,7 +208,7 @@ impl<'a> Setup<'a> {
             clock: options.clock,
             progress: options.progress,
         };
-        regrasp_planner::solve(&request).map_err(|error| RunError::of_planner(self.scenario, error))
+        solve(&request).map_err(|error| RunError::of_planner(self.scenario, error))
     }
 
     fn hand(&self) -> &dyn Hand {

@@ -1,0 +1,284 @@
+//! From what is asked for to a study: variants, their plugins built for every scenario, refusals before the first run.
+
+use super::{LeftOut, Machine, RunKey, Seeds, Shard, Study, StudyFormat, StudyScenario, Variant};
+use super::{STUDY_VERSION, StudyError};
+use crate::scenario::Scenario;
+use crate::{RunError, Setup};
+use regrasp_api::Slot;
+use regrasp_host::{Choices, HostError, Registry};
+use regrasp_plan::PluginChoice;
+use serde_json::{Map, Value};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What a variant changes in one slot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// The slot.
+    pub slot: Slot,
+    /// The plugin that fills it; the role may be left away. Absent where only settings change.
+    pub id: Option<String>,
+    /// Settings that change.
+    pub settings: Map<String, Value>,
+}
+
+impl Change {
+    /// A few words: the plugin's name without its role, and the settings, such as `interleaved end=0.8`.
+    pub fn label(&self) -> String {
+        let id = self.id.as_deref().map(|id| id.rsplit_once('/').map_or(id, |(_, name)| name).to_owned());
+        let setting = |(key, value): (&String, &Value)| match value {
+            Value::String(text) => format!("{key}={text}"),
+            value => format!("{key}={value}"),
+        };
+        id.into_iter().chain(self.settings.iter().map(setting)).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// A variant that is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VariantDraft {
+    /// Its name.
+    pub name: String,
+    /// What it changes.
+    pub changes: Vec<Change>,
+}
+
+impl VariantDraft {
+    /// The variant with these changes, named after them.
+    fn of_changes(changes: Vec<Change>) -> Self {
+        let mut ordered: Vec<&Change> = changes.iter().collect();
+        ordered.sort_by_key(|change| change.slot);
+        let labels: Vec<String> = ordered.iter().map(|change| change.label()).collect();
+        let name = if labels.is_empty() { "base".to_owned() } else { labels.join(" + ") };
+        Self { name, changes }
+    }
+
+    /// The choices of a scenario with the changes; plugins before settings, in whatever order they were given.
+    fn choices(&self, base: &Choices) -> Choices {
+        let mut choices = base.clone();
+        for change in &self.changes {
+            change.id.iter().for_each(|id| choices.use_plugin(change.slot, id));
+        }
+        for change in &self.changes {
+            let settings = change.settings.iter();
+            settings.for_each(|(key, value)| choices.set(change.slot, key, value.clone()));
+        }
+        choices
+    }
+
+    fn variant(&self) -> Variant {
+        let mut levels: BTreeMap<Slot, String> = BTreeMap::new();
+        for change in &self.changes {
+            let level = levels.entry(change.slot).or_default();
+            let space = if level.is_empty() { "" } else { " " };
+            *level += &format!("{space}{}", change.label());
+        }
+        Variant { name: self.name.clone(), levels }
+    }
+}
+
+/// The full factorial: a variant for every way to take one change from each factor. The first takes the first of each: the baseline.
+pub fn factorial(factors: &[Vec<Change>]) -> Vec<VariantDraft> {
+    let mut combinations: Vec<Vec<Change>> = vec![Vec::new()];
+    for factor in factors {
+        let with = |changes: &Vec<Change>| -> Vec<Vec<Change>> {
+            factor.iter().map(|change| [changes.as_slice(), std::slice::from_ref(change)].concat()).collect()
+        };
+        combinations = combinations.iter().flat_map(with).collect();
+    }
+    combinations.into_iter().map(VariantDraft::of_changes).collect()
+}
+
+/// A study that is asked for.
+#[derive(Clone, Debug)]
+pub struct Draft {
+    /// See [`Study::command`].
+    pub command: Vec<String>,
+    /// See [`Study::versions`].
+    pub versions: BTreeMap<String, String>,
+    /// Where it is to run.
+    pub machine: Machine,
+    /// When it begins: seconds since 1970-01-01 UTC.
+    pub started_s: u64,
+    /// The part that is to be made; `None` for the whole.
+    pub shard: Option<Shard>,
+    /// What is to be compared, the baseline first.
+    pub variants: Vec<VariantDraft>,
+    /// The seeds.
+    pub seeds: Seeds,
+    /// Most seconds for one run.
+    pub time_limit_s: Option<f64>,
+    /// Leaves out what a variant's plugins do not support, instead of refusing the study.
+    pub skip_unsupported: bool,
+}
+
+/// A study whose plugins are built.
+pub struct Prepared<'a> {
+    /// What it is.
+    pub study: Study,
+    /// For each scenario and variant; `None` where that was left out.
+    setups: Vec<Vec<Option<Setup<'a>>>>,
+}
+
+impl Prepared<'_> {
+    /// What makes a run.
+    pub(super) fn setup(&self, key: RunKey) -> Option<&Setup<'_>> {
+        self.setups[key.scenario][key.variant].as_ref()
+    }
+}
+
+/// Builds every variant's plugins for every scenario, and refuses what cannot work.
+pub fn prepare<'a>(
+    draft: Draft,
+    scenarios: &'a [Scenario],
+    registry: &Registry,
+) -> Result<Prepared<'a>, StudyError> {
+    check_names(&draft, scenarios)?;
+    let mut left_out = Vec::new();
+    let mut setups = Vec::new();
+    for scenario in scenarios {
+        let row = draft.variants.iter().map(|variant| setup(&draft, scenario, variant, registry));
+        let row = row.collect::<Result<Vec<_>, _>>()?;
+        let gone = row.iter().filter_map(|built| built.as_ref().err()).cloned();
+        left_out.extend(gone);
+        setups.push(row.into_iter().map(Result::ok).collect::<Vec<_>>());
+    }
+    if setups.iter().flatten().all(Option::is_none) {
+        let reason = left_out.first().map_or(String::new(), |pair: &LeftOut| format!(": {}", pair.reason));
+        return Err(StudyError::Empty { reason });
+    }
+    let described = scenarios.iter().zip(&setups).map(|(scenario, row)| described(scenario, &draft, row));
+    let study = Study {
+        format: StudyFormat::RegraspStudy,
+        version: STUDY_VERSION,
+        versions: draft.versions.clone(),
+        machines: vec![draft.machine.clone()],
+        started_s: draft.started_s,
+        shard: draft.shard,
+        scenarios: described.collect(),
+        varied: varied(&draft.variants),
+        variants: draft.variants.iter().map(VariantDraft::variant).collect(),
+        left_out,
+        seeds: draft.seeds,
+        time_limit_s: draft.time_limit_s,
+        command: draft.command,
+    };
+    Ok(Prepared { study, setups })
+}
+
+fn check_names(draft: &Draft, scenarios: &[Scenario]) -> Result<(), StudyError> {
+    let double = |names: Vec<&str>| {
+        let mut seen = BTreeSet::new();
+        names.into_iter().find(|name| !seen.insert(*name)).map(str::to_owned)
+    };
+    if let Some(name) = double(scenarios.iter().map(|scenario| scenario.name.as_str()).collect()) {
+        return Err(StudyError::DoubleScenario { name });
+    }
+    if let Some(name) = double(draft.variants.iter().map(|variant| variant.name.as_str()).collect()) {
+        return Err(StudyError::DoubleVariant { name });
+    }
+    for variant in &draft.variants {
+        let slots = variant.changes.iter().filter(|change| change.id.is_some());
+        if let Some(slot) = double(slots.map(|change| change.slot.name()).collect()) {
+            return Err(StudyError::TwoPlugins { variant: variant.name.clone(), slot });
+        }
+    }
+    Ok(())
+}
+
+/// The slots that variants fill by themselves.
+fn varied(variants: &[VariantDraft]) -> Vec<Slot> {
+    let slots = variants.iter().flat_map(|variant| &variant.changes).map(|change| change.slot);
+    slots.collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+/// A variant's plugins for a scenario; `Ok(Err(_))` where the pair is left out.
+fn setup<'a>(
+    draft: &Draft,
+    scenario: &'a Scenario,
+    variant: &VariantDraft,
+    registry: &Registry,
+) -> Result<Result<Setup<'a>, LeftOut>, StudyError> {
+    let error = match Setup::new(scenario, &variant.choices(&scenario.choices), registry) {
+        Ok(setup) => return Ok(Ok(setup)),
+        Err(error) => error,
+    };
+    let (name, of) = (scenario.name.clone(), variant.name.clone());
+    let unsupported =
+        matches!(&error, RunError::Host(HostError::Build { .. } | HostError::TooFewFingers { .. }));
+    match unsupported && draft.skip_unsupported {
+        true => Ok(Err(LeftOut { scenario: name, variant: of, reason: error.to_string() })),
+        false => {
+            let error = Box::new(error);
+            Err(StudyError::Refused { scenario: name, variant: of, unsupported, error })
+        }
+    }
+}
+
+fn described(scenario: &Scenario, draft: &Draft, row: &[Option<Setup<'_>>]) -> StudyScenario {
+    let plugin = |choice: &regrasp_host::Choice| PluginChoice {
+        id: choice.id.clone(),
+        settings: Value::Object(choice.settings.clone()),
+    };
+    let plugins = |(variant, setup): (&VariantDraft, &Option<Setup<'_>>)| {
+        // What was left out could not be built, so that its settings are those that were asked for.
+        let asked = || variant.choices(&scenario.choices);
+        let choices = setup.as_ref().map_or_else(asked, |setup| setup.choices().clone());
+        choices.iter().map(|(slot, choice)| (slot, plugin(choice))).collect()
+    };
+    let mut problem = scenario.problem.clone();
+    problem.limits.budget.time_limit = draft.time_limit_s.or(problem.limits.budget.time_limit);
+    StudyScenario {
+        name: scenario.name.clone(),
+        summary: scenario.summary.clone(),
+        source: scenario.source.clone(),
+        paper: scenario.paper.clone(),
+        plugins: draft.variants.iter().zip(row).map(plugins).collect(),
+        problem,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn change(slot: Slot, id: Option<&str>, settings: Value) -> Change {
+        let settings = settings.as_object().cloned().unwrap_or_default();
+        Change { slot, id: id.map(str::to_owned), settings }
+    }
+
+    #[test]
+    fn the_factorial_takes_one_of_each_and_begins_with_the_firsts() {
+        let factors = [
+            vec![
+                change(Slot::Sampler, Some("sampler/rlg"), json!({})),
+                change(Slot::Sampler, Some("projection"), json!({})),
+            ],
+            vec![
+                change(Slot::StabilityTest, Some("force-closure"), json!({})),
+                change(Slot::StabilityTest, Some("linearised"), json!({"edges": 8})),
+            ],
+        ];
+        let names: Vec<String> = factorial(&factors).into_iter().map(|variant| variant.name).collect();
+        let expected = [
+            "force-closure + rlg",
+            "linearised edges=8 + rlg",
+            "force-closure + projection",
+            "linearised edges=8 + projection",
+        ];
+        assert_eq!(names, expected);
+        assert_eq!(factorial(&[]).len(), 1, "nothing varied is one variant");
+        assert_eq!(factorial(&[])[0].name, "base");
+    }
+
+    #[test]
+    fn plugins_are_chosen_before_their_settings_are_set() {
+        let settings = change(Slot::Sampler, None, json!({"tries": 3}));
+        let plugin = change(Slot::Sampler, Some("projection"), json!({}));
+        let variant = VariantDraft::of_changes(vec![settings, plugin]);
+        let choices = variant.choices(&Choices::default());
+        let choice = choices.choice(Slot::Sampler);
+        assert_eq!((choice.id.as_str(), &choice.settings["tries"]), ("projection", &json!(3)));
+        assert_eq!(variant.variant().levels[&Slot::Sampler], "tries=3 projection");
+    }
+}

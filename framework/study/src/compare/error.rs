@@ -1,0 +1,108 @@
+//! Why a study is refused, or cannot go on.
+
+use crate::RunError;
+use regrasp_plan::WriteError;
+use std::{io, path::PathBuf};
+use thiserror::Error;
+
+/// A study is refused, or cannot go on. Runs that fail are not among these: they are rows of the study.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// A variant's plugins cannot be had for a scenario.
+    #[error("variant `{variant}`, scenario `{scenario}`: {error}{}", if *.unsupported { "\n  `--skip-unsupported` leaves such pairs out" } else { "" })]
+    Refused {
+        /// The scenario's name.
+        scenario: String,
+        /// The variant's name.
+        variant: String,
+        /// Whether the plugins exist and are well set, only not for this scenario.
+        unsupported: bool,
+        /// Why.
+        error: Box<RunError>,
+    },
+    /// Everything was left out.
+    #[error("there is nothing to run: no variant supports any of the scenarios{reason}")]
+    Empty {
+        /// The first reason.
+        reason: String,
+    },
+    /// Two scenarios share a name.
+    #[error(
+        "two scenarios are called `{name}`; name each once, and give files of the same name another `name`"
+    )]
+    DoubleScenario {
+        /// The name.
+        name: String,
+    },
+    /// Two variants share a name.
+    #[error(
+        "two variants are called `{name}`; name each plugin once, and give each variant a name of its own"
+    )]
+    DoubleVariant {
+        /// The name.
+        name: String,
+    },
+    /// A variant fills a slot twice.
+    #[error("variant `{variant}` fills `{slot}` twice; vary each slot's plugin once")]
+    TwoPlugins {
+        /// The variant's name.
+        variant: String,
+        /// The slot.
+        slot: String,
+    },
+    /// The folder holds another study.
+    #[error("`{}` holds another study: {difference}; give another folder, or delete this one", folder.display())]
+    OtherStudy {
+        /// The folder.
+        folder: PathBuf,
+        /// What differs first.
+        difference: String,
+    },
+    /// The folder holds other things.
+    #[error("`{}` holds no study, but has `{entry}` in it; give a new or an empty folder", folder.display())]
+    NotEmpty {
+        /// The folder.
+        folder: PathBuf,
+        /// One of its entries.
+        entry: String,
+    },
+    /// The folder is no study's.
+    #[error("`{}` holds no study: {reason}", folder.display())]
+    NoStudy {
+        /// The folder.
+        folder: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// Another process works on the same study.
+    #[error("`{}` is being worked on by another process; wait for it, or give another folder", folder.display())]
+    Busy {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A line of the journal cannot be read.
+    #[error("`{}`, line {line}: {reason}; delete the line, and its run will be made again", path.display())]
+    Journal {
+        /// The journal.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// Parts do not make a whole.
+    #[error("{0}")]
+    Merge(String),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A file or folder cannot be used.
+    #[error("`{}`: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
