@@ -1,0 +1,118 @@
+//! What may be said of a scenario's runs: no more than the tests show.
+
+use super::number::{milliseconds, p_text, percent, ratio_text};
+use crate::compare::statistics::ALPHA;
+use crate::compare::{Cell, Compared, Figure};
+use std::iter;
+
+/// Fewer pairs than this cannot reach 5 %, whatever they show.
+const FEWEST_PAIRS: usize = 6;
+
+/// Up to so many variants are named one by one.
+const FEW: usize = 4;
+
+/// The result of a scenario in a sentence or two; `name` marks the names of variants.
+pub fn finding(row: &[Cell<'_>], name: &dyn Fn(&str) -> String) -> String {
+    let Some((first, others)) = row.split_first() else { return "There are no runs yet.".into() };
+    let compared: Vec<(&Cell<'_>, &Compared)> =
+        others.iter().filter_map(|cell| Some((cell, cell.compared.as_ref()?))).collect();
+    if compared.is_empty() {
+        return row.iter().map(|cell| alone(cell, name)).collect::<Vec<_>>().join(" ");
+    }
+    let times = if compared.len() <= FEW { one_by_one(&compared, name) } else { counted(&compared, name) };
+    let sentence = format!("Against {} ({}), {times}.", name(&first.variant.name), brief(first));
+    iter::once(sentence).chain(solving(first, &compared, name)).collect::<Vec<_>>().join(" ")
+}
+
+/// What one variant did, with nothing to compare it with.
+fn alone(cell: &Cell<'_>, name: &dyn Fn(&str) -> String) -> String {
+    let solved =
+        format!("{} solved {} of {}", name(&cell.variant.name), cell.successes().count(), cell.runs.len());
+    let share = cell.success().map(|share| format!(" ({} %)", percent(share))).unwrap_or_default();
+    let time = cell.median(Figure::Planning).map(milliseconds);
+    let time = time.map(|time| format!(", at the median in {time} ms")).unwrap_or_default();
+    format!("{solved}{share}{time}.")
+}
+
+fn brief(cell: &Cell<'_>) -> String {
+    let solved = format!("{} of {} solved", cell.successes().count(), cell.runs.len());
+    match cell.median(Figure::Planning) {
+        Some(time) => format!("{solved}, median {} ms", milliseconds(time)),
+        None => solved,
+    }
+}
+
+fn is_shown(compared: &Compared) -> bool {
+    compared.time_p < ALPHA
+}
+
+fn one_by_one(compared: &[(&Cell<'_>, &Compared)], name: &dyn Fn(&str) -> String) -> String {
+    let shown = compared.iter().filter(|(_, compared)| is_shown(compared));
+    let mut parts: Vec<String> = shown.map(|pair| took(pair, name)).collect();
+    let rest = |is_wanted: &dyn Fn(usize) -> bool| {
+        let wanted = compared.iter().filter(|(_, c)| !is_shown(c) && is_wanted(c.paired.both));
+        wanted.map(|(cell, _)| name(&cell.variant.name)).collect::<Vec<_>>()
+    };
+    let unclear = rest(&|both| both >= FEWEST_PAIRS);
+    if !unclear.is_empty() {
+        parts.push(format!("no difference in time could be shown for {}", unclear.join(", ")));
+    }
+    let few = rest(&|both| both < FEWEST_PAIRS);
+    if !few.is_empty() {
+        parts.push(format!("too few seeds were solved by both to compare times with {}", few.join(", ")));
+    }
+    parts.join("; ")
+}
+
+/// How much longer or shorter one variant took.
+fn took((cell, compared): &(&Cell<'_>, &Compared), name: &dyn Fn(&str) -> String) -> String {
+    let ratio = compared.paired.ratio.map(ratio_text).unwrap_or_default();
+    format!("{} took {ratio} times as long, {}", name(&cell.variant.name), p_text(compared.time_p))
+}
+
+/// How many variants are faster and slower, and the extreme of each side.
+fn counted(compared: &[(&Cell<'_>, &Compared)], name: &dyn Fn(&str) -> String) -> String {
+    let ratio = |compared: &Compared| compared.paired.ratio.map_or(1.0, |ratio| ratio.value);
+    let mut shown: Vec<_> = compared.iter().filter(|(_, c)| is_shown(c)).collect();
+    shown.sort_by(|a, b| ratio(a.1).total_cmp(&ratio(b.1)));
+    let faster = shown.iter().filter(|(_, compared)| ratio(compared) < 1.0).count();
+    let slower = shown.len() - faster;
+    let mut text = format!("{faster} of {} variants are faster", compared.len());
+    if let Some(best) = shown.first().filter(|_| faster > 0) {
+        text += &format!(" (most of all: {})", took(best, name));
+    }
+    text += &format!(", {slower} slower");
+    if let Some(worst) = shown.last().filter(|_| slower > 0) {
+        text += &format!(" (most of all: {})", took(worst, name));
+    }
+    let rest = compared.len() - shown.len();
+    text + &format!("; for {rest} no difference in time could be shown")
+}
+
+/// Whether some variant solves more or fewer; nothing where all solved everything.
+fn solving(
+    baseline: &Cell<'_>,
+    compared: &[(&Cell<'_>, &Compared)],
+    name: &dyn Fn(&str) -> String,
+) -> Option<String> {
+    let mut all = compared.iter().map(|(cell, _)| *cell).chain(iter::once(baseline));
+    if all.all(|cell| cell.successes().count() == cell.runs.len()) {
+        return Some("All solved every run.".into());
+    }
+    let shown = compared.iter().filter(|(_, compared)| compared.solved_p < ALPHA);
+    let says = |(cell, compared): &(&Cell<'_>, &Compared)| {
+        let more = compared.paired.only_variant > compared.paired.only_baseline;
+        let (solved, runs) = (cell.successes().count(), cell.runs.len());
+        let which = if more { "more" } else { "fewer" };
+        format!(
+            "{} solved {which}: {solved} of {runs}, {}",
+            name(&cell.variant.name),
+            p_text(compared.solved_p)
+        )
+    };
+    let shown: Vec<String> = shown.map(says).collect();
+    match shown.as_slice() {
+        [] => Some("No difference in the share of solved runs could be shown.".into()),
+        shown => Some(shown.join("; ") + "."),
+    }
+}
