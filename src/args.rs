@@ -8,7 +8,7 @@ use std::path::PathBuf;
 #[command(
     name = "regrasp",
     version,
-    after_help = "Exit codes: 0 done; 2 bad input; 3 no plan within the budget; 4 a plan that does not verify; 130 interrupted.\n\n\
+    after_help = "Exit codes: 0 done; 2 bad input; 3 no plan within the budget; 4 a plan that does not verify, or a replay that does not arrive; 130 interrupted.\n\n\
                   Example:\n  regrasp plan sphere -o plan.json && regrasp verify plan.json"
 )]
 pub struct Arguments {
@@ -20,6 +20,7 @@ pub struct Arguments {
 pub enum Command {
     Plan(PlanArgs),
     Verify(VerifyArgs),
+    Replay(crate::replay::ReplayArgs),
     Plugins(PluginsArgs),
     Scenarios(ScenariosArgs),
     Schema(SchemaArgs),

@@ -26,6 +26,11 @@ impl Failure {
         Self { code: 4, message }
     }
 
+    /// An object that does not arrive (exit code 4).
+    pub fn not_arrived(message: String) -> Self {
+        Self { code: 4, message }
+    }
+
     /// Interrupted (exit code 130, as shells expect after Ctrl-C).
     pub fn interrupted(message: String) -> Self {
         Self { code: 130, message }

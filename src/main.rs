@@ -1,6 +1,6 @@
 //! The command line.
 //!
-//! Exit codes: 0 done; 2 bad input; 3 no plan within the budget; 4 a plan that does not verify; 130 interrupted.
+//! Exit codes: 0 done; 2 bad input; 3 no plan within the budget; 4 a plan that does not verify, or a replay that does not arrive; 130 interrupted.
 
 mod args;
 mod failure;
@@ -9,6 +9,7 @@ mod overrides;
 mod plan;
 mod plugins;
 mod progress;
+mod replay;
 mod report;
 mod scenarios;
 mod schema;
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
     let done = match &arguments.command {
         Command::Plan(args) => plan::run(args),
         Command::Verify(args) => verify::run(args),
+        Command::Replay(args) => replay::run(args),
         Command::Plugins(args) => plugins::run(args),
         Command::Scenarios(args) => scenarios::run(args),
         Command::Schema(args) => schema::run(args),

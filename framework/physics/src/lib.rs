@@ -47,7 +47,7 @@ pub use hold::Held;
 #[cfg(feature = "rapier")]
 pub use pace::Pace;
 #[cfg(feature = "rapier")]
-pub use replay::{ReplayReport, ReplaySettings, StageReport, replay};
+pub use replay::{Moment, ReplayReport, ReplaySettings, StageReport, replay};
 #[cfg(feature = "rapier")]
 pub use report::{Bounds, Failure, Happening, Outcome};
 pub use settings::SimulationSettings;

@@ -37,6 +37,15 @@ impl Default for ReplaySettings {
     }
 }
 
+/// Where the object is at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Time from the start of the replay (s).
+    pub time: f64,
+    /// The object's pose in H.
+    pub X_HO: Pose,
+}
+
 /// What happened in one stage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageReport {
@@ -51,6 +60,11 @@ pub struct StageReport {
     pub end_distance: f64,
     /// Angle of the object from its planned orientation at the stage's end (rad).
     pub end_angle: f64,
+    /// When the stage began (s): forces pass over to the fingers that hold in it, then it moves.
+    pub begin: f64,
+    /// Where the object was as each state was passed, as far as the stage was made; at its last moment where the replay ended in it, and at the end of the
+    /// last stage when it was held for a while.
+    pub track: Vec<Moment>,
 }
 
 /// What a replay found.
@@ -96,6 +110,9 @@ pub fn replay(
     settings: &ReplaySettings,
 ) -> Result<ReplayReport, PhysicsError> {
     settings.validate()?;
+    if !problem.hand.fingertip.is_ball() {
+        return Err(PhysicsError::PointFingertips);
+    }
     let world = World::new(problem, base).map_err(|error| PhysicsError::Problem(error.to_string()))?;
     let surface = ball_surface(&world.object.mesh)?;
     let hull = hull(&world.object.mesh)?;
@@ -137,12 +154,18 @@ impl Run<'_> {
     fn stage(&mut self, stage: &Stage<'_>, is_last: bool) -> StageReport {
         let mut outcome = Outcome::new(self.scene.hand.finger_count());
         let (knots, margin) = self.knots(stage, is_last);
+        let (begin, mut track) = (self.clock, Vec::with_capacity(knots.len()));
         if let Some(first) = knots.first() {
             let (scene, settings) = (&self.scene, &self.settings.simulation);
             let simulator = self.simulator.get_or_insert_with(|| Simulator::new(scene, settings, first));
-            simulator.run(&knots, &self.settings.bounds, &mut outcome);
+            let note = &mut |time, X_HO| track.push(Moment { time, X_HO });
+            simulator.run(&knots, &self.settings.bounds, &mut outcome, note);
+            // The first knot is where the stage before ended.
+            if let Some(failure) = &mut outcome.failure {
+                failure.state = failure.state.saturating_sub(1);
+            }
             self.last = knots.last().cloned();
-            self.clock = self.last.as_ref().map_or(self.clock, |knot| knot.time);
+            self.clock = track.last().map_or(self.clock, |moment| moment.time);
         }
         if knots.len() <= stage.states.len() && outcome.is_good() {
             let failure =
@@ -150,7 +173,7 @@ impl Run<'_> {
             outcome.failure = Some(failure);
         }
         let (end_distance, end_angle) = self.off(stage);
-        StageReport { moving: stage.moving, outcome, margin, end_distance, end_angle }
+        StageReport { moving: stage.moving, outcome, margin, end_distance, end_angle, begin, track }
     }
 
     /// The stage's schedule, forces passing over first, up to where no forces hold the object; and the least margin of a grip (N).

@@ -92,7 +92,14 @@ impl Simulator {
     }
 
     /// Goes through the knots and takes what happens into the outcome, until something happens that must not. Net slip counts from here.
-    pub fn run(&mut self, knots: &[Knot], bounds: &Bounds, outcome: &mut Outcome) {
+    /// `passed` is told the time (s) and the object's pose at each knot but the first, and where the run ends early.
+    pub fn run(
+        &mut self,
+        knots: &[Knot],
+        bounds: &Bounds,
+        outcome: &mut Outcome,
+        passed: &mut dyn FnMut(f64, Pose),
+    ) {
         self.slip_O = PerFinger::filled(self.slip_O.len(), Vec3::zeros());
         let dt = self.world.integration_parameters.dt;
         for (state, pair) in knots.windows(2).enumerate() {
@@ -105,11 +112,14 @@ impl Simulator {
                 self.drive(pair, s, span);
                 self.world.step();
                 if let Some(what) = self.measure(pair, s, bounds, outcome) {
-                    outcome.failure = Some(Failure { what, time: pair[0].time + s * span, state });
+                    let time = pair[0].time + s * span;
+                    outcome.failure = Some(Failure { what, time, state });
+                    passed(time, self.pose());
                     self.world.integration_parameters.dt = dt;
                     return;
                 }
             }
+            passed(pair[1].time, self.pose());
         }
         self.world.integration_parameters.dt = dt;
     }

@@ -54,7 +54,7 @@ impl TransferSimulator {
         let mut outcome = Outcome::new(hand.finger_count());
         if let Some(first) = knots.first() {
             let scene = Scene { hand, object, shape: &self.shape, fixed: &[], hull: None, g_H };
-            Simulator::new(&scene, &self.settings, first).run(&knots, bounds, &mut outcome);
+            Simulator::new(&scene, &self.settings, first).run(&knots, bounds, &mut outcome, &mut |_, _| ());
         }
         if held < states.len() && outcome.is_good() {
             let time = times.get(held).copied().unwrap_or(0.0);

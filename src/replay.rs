@@ -1,0 +1,64 @@
+//! `regrasp replay`: a plan carried out in simulation.
+
+use clap::Args;
+use std::path::PathBuf;
+
+/// Carry out a plan in a physics simulation: does the object arrive?
+#[derive(Debug, Args)]
+#[command(after_help = "\
+The object is free, under the gravity that the plan's scenario gives (0, 0, -9.81 m/s² in the hand's frame where it gave none), and held by friction alone. Each joint is \
+driven by a motor with a stiffness, a damping and the joint's effort limit; it follows the plan, and what the grasp needs is fed forward: forces that a conic \
+program chooses in every state, inside the friction cones and the efforts. Nothing looks at where the object is. Between two segments the forces pass over to the fingers that hold next.\n\n\
+Reported for each segment: the largest deviation of the object from the plan, the largest slip of a fingertip, where the object is at the segment's end, and what went wrong. The object has \
+arrived if it is within 5 mm and 5° of the plan's end. It counts as dropped where it is 20 mm or 30° off; the replay ends there.\n\n\
+Exit codes: 0 the object arrives; 2 bad input; 4 it does not.\n\n\
+Examples:\n  regrasp replay plan.json\n  regrasp replay plan.json --slowdown 2 --mass-scale 1.5\n  regrasp replay plan.json -o replay.json")]
+pub struct ReplayArgs {
+    /// A plan file.
+    pub plan: PathBuf,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    pub json: bool,
+    /// Write the JSON object to this file, with the object's pose at every state of the plan.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Multiply the simulated friction by this, 0 to 10; the forces are chosen for the plan's own.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number::<0, 10>)]
+    pub friction_scale: f64,
+    /// Multiply the simulated mass by this, up to 1000; the forces are chosen for the plan's own.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number::<0, 1000>)]
+    pub mass_scale: f64,
+    /// Multiply the motors' stiffness by this, up to 1000; at 1 it is 10 N·m/rad, or 1000 N/m in prismatic joints.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number::<0, 1000>)]
+    pub stiffness_scale: f64,
+    /// Multiply the plan's times by this, 0.1 to 100: more than 1 is slower.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number::<0, 100>)]
+    pub slowdown: f64,
+    /// Most normal force of one contact (N); by default the greater of 2 N and three times the object's weight.
+    #[arg(long, value_name = "N", value_parser = number::<0, 10_000>)]
+    pub grip: Option<f64>,
+    /// Gravity in the hand's frame (m/s²), such as 0,0,9.81; by default the scenario's.
+    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 3, allow_hyphen_values = true, value_parser = number::<-1000, 1000>)]
+    pub gravity: Option<Vec<f64>>,
+}
+
+/// A finite number in `LOW..=HIGH`; the simulation has narrower ranges for some.
+fn number<const LOW: i32, const HIGH: i32>(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (f64::from(LOW)..=f64::from(HIGH)).contains(&number) => Ok(number),
+        _ => Err(format!("it must be a number in {LOW}..={HIGH}")),
+    }
+}
+
+#[cfg(not(feature = "rapier"))]
+pub fn run(_: &ReplayArgs) -> Result<(), crate::Failure> {
+    Err(crate::Failure::bad_input(
+        "this program was built without simulation; build it with the feature `rapier`, which is on by default",
+    ))
+}
+
+#[cfg(feature = "rapier")]
+pub use simulated::run;
+
+#[cfg(feature = "rapier")]
+mod simulated;
