@@ -9,7 +9,9 @@ mod scene;
 
 pub use clearance::SceneClearance;
 pub use error::WorldError;
-pub use hand::{ChainHand, HandError, LinkFrame, LinkFrames};
+pub use hand::{
+    ChainHand, HandError, LinkFrame, LinkFrames, UrdfError, UrdfHand, UrdfOptions, UrdfReport, read_urdf,
+};
 pub use mesh::{MAX_FACETS, load_mesh};
 pub use object::{load_object, primitive_mesh};
 pub use scene::{World, check_limits, check_problem, check_units, embed_hand, embed_object, embed_obstacles};

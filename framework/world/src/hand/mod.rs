@@ -42,9 +42,11 @@ mod error;
 mod inverse;
 mod reach;
 mod screw;
+mod urdf;
 
 pub use chain::{LinkFrame, LinkFrames};
 pub use error::HandError;
+pub use urdf::{UrdfError, UrdfHand, UrdfOptions, UrdfReport, read_urdf};
 
 use chain::FingerChain;
 use check::FingerPoses;

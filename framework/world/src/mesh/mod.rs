@@ -74,6 +74,11 @@ fn adjusted((mut vertices, mut facets): Raw, source: &MeshSource, key: &str) -> 
     Ok((vertices, facets))
 }
 
+/// Vertices and facets as a file has them, vertices at equal coordinates merged: for uses that need no closed surface, such as a hull.
+pub(crate) fn read_points(path: &Path) -> Result<Raw, String> {
+    read(path).map(weld::welded)
+}
+
 fn read(path: &Path) -> Result<Raw, String> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let parse = match extension.as_str() {

@@ -1,0 +1,181 @@
+//! From the geometries of a URDF to convex shapes of links.
+
+use super::document::{Geometry, Link, Solid};
+use super::error::Fault;
+use super::hull;
+use super::packages::Packages;
+use crate::mesh::{in_memory, read_points};
+use nalgebra::Point3;
+use regrasp_api::{Mesh, PlacedShape, Pose, PoseDescription, Shape, Vec3};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::path::PathBuf;
+
+/// Sides of the prism that stands for a cylinder; its edges stand out by 2 % of the radius.
+const SIDES: usize = 16;
+
+/// A convex solid in the frame B of what it belongs to: all points within `radius` of the hull of `corners`.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub shape: Shape,
+    pub X_BS: Pose,
+    /// In B (m).
+    pub corners: Vec<Vec3>,
+    pub radius: f64,
+}
+
+impl Piece {
+    fn new(shape: Shape, X_BS: Pose, corners_S: &[Vec3], radius: f64) -> Self {
+        let corners = corners_S.iter().map(|p| (X_BS * Point3::from(*p)).coords).collect();
+        Self { shape, X_BS, corners, radius }
+    }
+
+    /// A box.
+    pub fn cuboid(half: Vec3, X_BS: Pose) -> Self {
+        let sign = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
+        let corner = |i: usize| Vec3::new(sign(i & 1), sign(i & 2), sign(i & 4)).component_mul(&half);
+        let corners: Vec<Vec3> = (0..8).map(corner).collect();
+        Self::new(Shape::Box { size: (half * 2.0).into() }, X_BS, &corners, 0.0)
+    }
+
+    /// A convex mesh, in B.
+    pub fn of_mesh(mesh: &Mesh) -> Self {
+        let shape = Shape::Mesh(in_memory(mesh));
+        Self::new(shape, Pose::identity(), mesh.vertices(), 0.0)
+    }
+
+    /// The piece, given in B, in a frame A.
+    pub fn moved(self, X_AB: &Pose) -> Self {
+        let corners = self.corners.iter().map(|p| (X_AB * Point3::from(*p)).coords).collect();
+        Self { X_BS: X_AB * self.X_BS, corners, ..self }
+    }
+
+    pub fn placed(&self) -> PlacedShape {
+        let still = self.X_BS == Pose::identity();
+        let pose = if still { PoseDescription::default() } else { PoseDescription::from(&self.X_BS) };
+        PlacedShape { shape: self.shape.clone(), pose }
+    }
+
+    /// How far the piece reaches in the direction `n` (m).
+    pub fn reach(&self, n: &Vec3) -> f64 {
+        self.corners.iter().map(|p| n.dot(p)).fold(f64::NEG_INFINITY, f64::max) + self.radius
+    }
+}
+
+/// Reads geometries, each mesh file once.
+#[derive(Debug)]
+pub(super) struct Shaper {
+    packages: Packages,
+    /// The most convex pieces of a mesh; with 1 its hull is taken.
+    most_pieces: usize,
+    read: BTreeMap<PathBuf, (Vec<Vec3>, Vec<[u32; 3]>)>,
+    /// What was done to which link's shapes.
+    pub notes: Vec<String>,
+}
+
+impl Shaper {
+    pub fn new(packages: Packages, most_pieces: usize) -> Self {
+        Self { packages, most_pieces, read: BTreeMap::new(), notes: Vec::new() }
+    }
+
+    /// The convex pieces of a link, in its frame: of `<collision>`, or of `<visual>` where there is none.
+    pub fn pieces(&mut self, link: &Link) -> Result<Vec<Piece>, Fault> {
+        let (solids, source) = match (&link.collision[..], &link.visual[..]) {
+            ([], []) => return Ok(Vec::new()),
+            ([], visual) => (visual, "visual (it has no collision)"),
+            (collision, _) => (collision, "collision"),
+        };
+        let (mut all, mut done) = (Vec::new(), Vec::new());
+        for solid in solids {
+            let (pieces, what) = self.solid(solid)?;
+            all.extend(pieces);
+            done.push(what);
+        }
+        self.notes.push(format!("link `{}`: {} from its {source}", link.name, done.join(", ")));
+        Ok(all)
+    }
+
+    fn solid(&mut self, solid: &Solid) -> Result<(Vec<Piece>, String), Fault> {
+        let X = solid.X_LS;
+        let one = |piece: Piece, what: &str| Ok((vec![piece], what.to_owned()));
+        match &solid.geometry {
+            Geometry::Box { size } => {
+                one(Piece::cuboid(Vec3::from(*size) / 2.0, X), "a box")
+            }
+            Geometry::Sphere { radius } => {
+                let piece = Piece::new(Shape::Sphere { radius: *radius }, X, &[Vec3::zeros()], *radius);
+                one(piece, "a ball")
+            }
+            Geometry::Capsule { radius, length } => {
+                let ends = [-0.5, 0.5].map(|s| Vec3::new(0.0, 0.0, s * length));
+                let shape = Shape::Capsule { from: ends[0].into(), to: ends[1].into(), radius: *radius };
+                one(Piece::new(shape, X, &ends, *radius), "a capsule")
+            }
+            Geometry::Cylinder { radius, length } => {
+                let points = prism(*radius, *length);
+                let mesh = hull::hull(&points).ok_or_else(|| {
+                    Fault::at(solid.line, "the cylinder is thinner than a micrometre; lengths are in metres")
+                })?;
+                one(Piece::of_mesh(&mesh).moved(&X), &format!("a prism of {SIDES} sides around a cylinder"))
+            }
+            Geometry::Mesh { file, scale } => self.mesh(solid, file, Vec3::from(*scale)),
+        }
+    }
+
+    fn mesh(&mut self, solid: &Solid, name: &str, scale: Vec3) -> Result<(Vec<Piece>, String), Fault> {
+        let path = self.packages.resolve(name).map_err(|tried| missing(solid.line, name, &tried))?;
+        if !self.read.contains_key(&path) {
+            let raw = read_points(&path).map_err(|reason| {
+                Fault::at(solid.line, format!("cannot read the mesh `{}`: {reason}", path.display()))
+            })?;
+            let count = raw.0.len() as u32;
+            if count == 0 || raw.1.iter().flatten().any(|&vertex| vertex >= count) {
+                let message = format!("the mesh `{}` has no facets, or names corners that it lacks", path.display());
+                return Err(Fault::at(solid.line, message));
+            }
+            self.read.insert(path.clone(), raw);
+        }
+        let (points, facets) = &self.read[&path];
+        let points: Vec<Vec3> = points.iter().map(|p| p.component_mul(&scale)).collect();
+        if points.iter().any(|p| !(p.norm() < 1e3)) {
+            let message = format!("the mesh `{}` reaches beyond a kilometre; is a scale missing?", path.display());
+            return Err(Fault::at(solid.line, message));
+        }
+        let parts =
+            if self.most_pieces > 1 { hull::pieces(&points, facets, self.most_pieces) } else { Vec::new() };
+        let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let (pieces, what) = match (parts.len(), hull::hull(&points)) {
+            (count @ 2.., _) => (parts, format!("{count} convex pieces of {file} ({} facets)", facets.len())),
+            (_, Some(whole)) => (vec![whole], format!("the convex hull of {file} ({} facets)", facets.len())),
+            (_, None) => return Ok((vec![boxed(&points, &solid.X_LS)], format!("the box around {file}, which is flat"))),
+        };
+        Ok((pieces.iter().map(|mesh| Piece::of_mesh(mesh).moved(&solid.X_LS)).collect(), what))
+    }
+}
+
+fn boxed(points: &[Vec3], X: &Pose) -> Piece {
+    let (low, high) = hull::around(points);
+    let half = (high - low) / 2.0;
+    Piece::cuboid(half, X * Pose::translation(low.x + half.x, low.y + half.y, low.z + half.z))
+}
+
+/// The corners of a prism about z around a cylinder.
+fn prism(radius: f64, length: f64) -> Vec<Vec3> {
+    let outer = radius / (PI / SIDES as f64).cos();
+    let corner = |i: usize| {
+        let (sin, cos) = (2.0 * PI * (i % SIDES) as f64 / SIDES as f64).sin_cos();
+        let z = if i < SIDES { -0.5 } else { 0.5 };
+        Vec3::new(outer * cos, outer * sin, z * length)
+    };
+    (0..2 * SIDES).map(corner).collect()
+}
+
+fn missing(line: usize, name: &str, tried: &[PathBuf]) -> Fault {
+    let tried: Vec<String> = tried.iter().take(4).map(|path| format!("`{}`", path.display())).collect();
+    let fix = if name.contains("://") {
+        "; give the folder that holds the package (`packages` under `[hand]`, `--packages` on the command line)"
+    } else {
+        ""
+    };
+    Fault::at(line, format!("the mesh `{name}` is not there; looked at {}{fix}", tried.join(", ")))
+}

@@ -1,0 +1,187 @@
+//! The ball that stands for a fingertip: where its centre lies, and what of the link it replaces.
+
+use super::document::{Geometry, Link};
+use super::hull;
+use super::solids::Piece;
+use regrasp_api::{Pose, Shape, Vec3};
+
+/// The clearance (m) that planning keeps by default: a link that is thinner than the ball by less touches the object beside the ball.
+const CLEARANCE: f64 = 5e-4;
+
+/// The ball's centre in the last link's frame L (m), the direction in which the finger ends, and how both were found.
+#[derive(Clone, Debug)]
+pub(super) struct Tip {
+    pub center: Vec3,
+    pub outward: Vec3,
+    pub how: String,
+    /// Whether the tip link's own shapes are nothing but the ball.
+    pub is_ball: bool,
+}
+
+/// The radius (m) of the tip link's shape, if it is one ball.
+pub(super) fn own_radius(link: &Link) -> Option<f64> {
+    let solids = if link.collision.is_empty() { &link.visual } else { &link.collision };
+    match solids[..] {
+        [ref solid] => match solid.geometry {
+            Geometry::Sphere { radius } => Some(radius),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+impl Tip {
+    /// `own`: the tip link's shapes; `all`: those of everything that moves with it, both in L. `offset`: the centre as given, in the tip
+    /// link's frame (m).
+    pub fn new(
+        X_LTip: &Pose,
+        offset: Option<[f64; 3]>,
+        (own, all): (&[Piece], &[Piece]),
+        radius: f64,
+        has_own_link: bool,
+    ) -> Self {
+        let origin = X_LTip.translation.vector;
+        if let Some(offset) = offset {
+            let center = (X_LTip * nalgebra::Point3::from(Vec3::from(offset))).coords;
+            let (outward, how) = (outward(&center, all), format!("given: {offset:?} in the tip's frame"));
+            return Self { center, outward, how, is_ball: has_own_link && inside(own, &center, radius) };
+        }
+        if let [piece] = own
+            && matches!(piece.shape, Shape::Sphere { .. })
+        {
+            let center = piece.corners[0];
+            let is_ball = has_own_link && piece.radius <= 1.25 * radius;
+            return Self { center, outward: outward(&center, all), how: "the centre of the tip link's ball".into(), is_ball };
+        }
+        if own.is_empty() {
+            let outward = outward(&origin, all);
+            return Self { center: origin, outward, how: "the origin of the tip link, which has no shape".into(), is_ball: false };
+        }
+        let (center, outward) = fit(own, radius);
+        Self { center, outward, how: "fitted to the end of the tip link's shape".into(), is_ball: has_own_link && inside(own, &center, radius) }
+    }
+
+    /// What remains of the last link's shapes beside the ball: what lies beyond the ball's centre, where the finger ends there, is cut off.
+    pub fn cut(&self, pieces: Vec<Piece>, radius: f64, notes: &mut Vec<String>, name: &str) -> Vec<Piece> {
+        let height = self.outward.dot(&self.center);
+        let most = pieces.iter().map(|piece| piece.reach(&self.outward)).fold(f64::NEG_INFINITY, f64::max);
+        if most > height + 1.5 * radius {
+            notes.push(format!(
+                "the last link of `{name}` goes on for {:.1} mm beyond the ball of its tip; is the tip's frame where the finger ends?",
+                1e3 * (most - height - radius)
+            ));
+            return pieces;
+        }
+        let kept: Vec<Piece> = pieces.into_iter().filter_map(|piece| below(piece, &self.outward, height)).collect();
+        let thick = self.thickness(&kept, radius);
+        if thick > radius - CLEARANCE {
+            notes.push(format!(
+                "the last link of `{name}` reaches {:.1} mm from its middle, the ball of its tip {:.1} mm: with the finger's sides it cannot \
+                 touch the object",
+                1e3 * thick, 1e3 * radius
+            ));
+        }
+        kept
+    }
+
+    /// How far (m) the link reaches from the line through the ball's centre, near the ball.
+    fn thickness(&self, pieces: &[Piece], radius: f64) -> f64 {
+        let aside = |p: &Vec3| {
+            let d = p - self.center;
+            (d.dot(&self.outward), (d - self.outward * d.dot(&self.outward)).norm())
+        };
+        let near = pieces.iter().flat_map(|piece| piece.corners.iter().map(|p| (aside(p), piece.radius)));
+        near.filter(|((along, _), _)| along.abs() < radius).map(|((_, aside), r)| aside + r).fold(0.0, f64::max)
+    }
+}
+
+/// The direction from the last joint to the tip, or where both coincide to the middle of the shapes.
+fn outward(center: &Vec3, all: &[Piece]) -> Vec3 {
+    let direction = center.try_normalize(1e-4);
+    direction.or_else(|| middle(all).try_normalize(1e-4)).unwrap_or_else(Vec3::z)
+}
+
+fn middle(pieces: &[Piece]) -> Vec3 {
+    let corners: Vec<Vec3> = pieces.iter().flat_map(|piece| piece.corners.iter().copied()).collect();
+    if corners.is_empty() {
+        return Vec3::zeros();
+    }
+    let (low, high) = hull::around(&corners);
+    (low + high) / 2.0
+}
+
+/// The ball of the given radius that touches the far end of the shapes from within, in the middle of what is there.
+fn fit(own: &[Piece], radius: f64) -> (Vec3, Vec3) {
+    let outward = middle(own).try_normalize(1e-4).unwrap_or_else(Vec3::z);
+    let end = own.iter().map(|piece| piece.reach(&outward)).fold(f64::NEG_INFINITY, f64::max);
+    let is_near = |p: &&Vec3| outward.dot(p) >= end - radius;
+    let mut near: Vec<Vec3> =
+        own.iter().flat_map(|piece| piece.corners.iter().filter(is_near).copied()).collect();
+    if near.is_empty() {
+        near.push(middle(own));
+    }
+    let (low, high) = hull::around(&near);
+    let aside = (low + high) / 2.0;
+    (aside + outward * (end - radius - outward.dot(&aside)), outward)
+}
+
+/// Whether the shapes are no more than the ball, to a quarter of its radius.
+fn inside(own: &[Piece], center: &Vec3, radius: f64) -> bool {
+    let far = |piece: &Piece| piece.corners.iter().map(|p| (p - center).norm() + piece.radius).fold(0.0, f64::max);
+    own.iter().all(|piece| far(piece) <= 1.25 * radius)
+}
+
+/// The part of a piece with n · x ≤ height; `None` where nothing is left.
+fn below(piece: Piece, n: &Vec3, height: f64) -> Option<Piece> {
+    if piece.reach(n) <= height + 1e-9 {
+        return Some(piece);
+    }
+    match piece.shape {
+        // A thinner rod may end in the ball.
+        Shape::Capsule { .. } | Shape::Sphere { .. } => rod_below(piece, n, height),
+        Shape::Box { size } if is_square(&piece, n) => Some(box_below(&piece, size, n, height)),
+        _ => {
+            let lines = piece.corners.iter().enumerate();
+            let pairs = lines.flat_map(|(i, a)| piece.corners[i + 1..].iter().map(move |b| (a, b)));
+            let mut points: Vec<Vec3> =
+                piece.corners.iter().copied().filter(|p| n.dot(p) <= height).collect();
+            // Every edge is among the lines between corners; the others cross the plane inside the cut.
+            points.extend(pairs.filter_map(|(a, b)| crossing(a, b, n, height)));
+            hull::hull(&points).map(|mesh| Piece::of_mesh(&mesh))
+        }
+    }
+}
+
+/// Whether a side of the box faces in the direction `n`.
+fn is_square(piece: &Piece, n: &Vec3) -> bool {
+    let n_S = piece.X_BS.rotation.inverse() * n;
+    n_S.abs().max() > 1.0 - 1e-9
+}
+
+fn box_below(piece: &Piece, size: [f64; 3], n: &Vec3, height: f64) -> Piece {
+    let n_S = piece.X_BS.rotation.inverse() * n;
+    let axis = n_S.abs().imax();
+    let cut = (piece.reach(n) - height).min(size[axis] - 1e-6);
+    let mut half = Vec3::from(size) / 2.0;
+    half[axis] -= cut / 2.0;
+    let mut X_BS = piece.X_BS;
+    X_BS.translation.vector -= n * (cut / 2.0);
+    Piece::cuboid(half, X_BS)
+}
+
+fn rod_below(piece: Piece, n: &Vec3, height: f64) -> Option<Piece> {
+    let ends = (piece.corners[0], *piece.corners.last()?);
+    let (from, to) = if n.dot(&ends.0) <= n.dot(&ends.1) { ends } else { (ends.1, ends.0) };
+    if n.dot(&from) > height {
+        return None;
+    }
+    let to = crossing(&from, &to, n, height).unwrap_or(to);
+    let shape = Shape::Capsule { from: from.into(), to: to.into(), radius: piece.radius };
+    Some(Piece { shape, X_BS: Pose::identity(), corners: vec![from, to], radius: piece.radius })
+}
+
+/// Where a line between two points crosses the plane n · x = height, if it does.
+fn crossing(a: &Vec3, b: &Vec3, n: &Vec3, height: f64) -> Option<Vec3> {
+    let (low, high) = (n.dot(a) - height, n.dot(b) - height);
+    (low * high < 0.0).then(|| a + (b - a) * (low / (low - high)))
+}
