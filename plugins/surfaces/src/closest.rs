@@ -74,6 +74,11 @@ impl ClosestPoints {
         !self.facets.any_closer(p_OF, squared, |facet| on_facet(polyhedron, p_OF, facet).squared < squared)
     }
 
+    /// Whether `is_it` holds for a facet whose box comes as close as `distance` (m); it is asked about others too.
+    pub fn any_box(&self, p_OF: &Vec3, distance: f64, is_it: impl FnMut(u32) -> bool) -> bool {
+        self.facets.any_closer(p_OF, distance.max(0.0).powi(2), is_it)
+    }
+
     /// Searches all facets; what is known already only gives the first bound.
     fn search(&self, polyhedron: &Polyhedron, p_OF: &Vec3, known: Option<Nearest>) -> Nearest {
         let mut best = known.unwrap_or_else(|| on_facet(polyhedron, p_OF, 0));
@@ -168,8 +173,8 @@ pub(crate) fn closest_of_facet(polyhedron: &Polyhedron, p_OF: &Vec3, facet: u32)
 
 /// The closest point of one facet (Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
 fn on_facet(polyhedron: &Polyhedron, p: &Vec3, facet: u32) -> Nearest {
-    let [a, b, c] = polyhedron.mesh.corners(facet);
-    let (p_OC, feature) = closest_on_triangle(p, &a, &b, &c);
+    let [a, b, c] = &polyhedron.corners[facet as usize];
+    let (p_OC, feature) = closest_on_triangle(p, a, b, c);
     Nearest { squared: (p - p_OC).norm_squared(), facet, p_OC, feature }
 }
 

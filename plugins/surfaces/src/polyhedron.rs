@@ -62,6 +62,8 @@ pub(crate) enum Place {
 #[derive(Clone, Debug)]
 pub(crate) struct Polyhedron {
     pub mesh: Mesh,
+    /// The corners of every facet (m, in O), side by side.
+    pub corners: Vec<[Vec3; 3]>,
     pub half_edges: Vec<HalfEdge>,
     /// The angle (rad) of each half-edge's direction around the vertex where it begins, counter-clockwise.
     pub direction: Vec<f64>,
@@ -94,6 +96,7 @@ impl Polyhedron {
         let half_edges: Vec<_> = (0..3 * count).map(|index| half_edge(mesh, index)).collect();
         let mut prepared = Self {
             mesh: mesh.clone(),
+            corners: (0..count).map(|facet| mesh.corners(facet)).collect(),
             direction: vec![0.0; half_edges.len()],
             outgoing: vec![u32::MAX; mesh.vertices().len()],
             total_angle: vec![0.0; mesh.vertices().len()],

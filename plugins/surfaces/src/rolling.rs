@@ -1,12 +1,12 @@
 //! A fingertip on an object's facets: whatever a surface answers besides how its paths are found.
 
 use crate::closest::ClosestPoints;
-use crate::hollows::Follower;
+use crate::hollows::{Follower, Room, open_facets};
 use crate::lift::{Leg, lift};
 use crate::polyhedron::{Place, Polyhedron};
 use crate::sharp::SharpEdges;
 use crate::walk::walk;
-use regrasp_api::{Contact, Mesh, Projection, Random, SurfacePath, Vec3, Waypoint};
+use regrasp_api::{Contact, Mesh, Projection, Random, SurfacePath, Vec3};
 
 /// Samples before an object counts as having (almost) no area that a fingertip can touch.
 const MOST_SAMPLES: usize = 1000;
@@ -24,6 +24,8 @@ pub(crate) struct Rolling {
     pub polyhedron: Polyhedron,
     pub closest: ClosestPoints,
     sharp: SharpEdges,
+    /// For each facet whether the fingertip can sink into nothing while it touches there; empty where no fingertip can.
+    open: Vec<bool>,
     /// The fingertip's radius (m).
     radius: f64,
     /// Largest distance (m) between two places of the fingertip that are looked at on solids that are not convex.
@@ -42,9 +44,12 @@ impl Rolling {
             sum += mesh.area(facet);
             sum
         });
+        let closest = ClosestPoints::new(&polyhedron);
+        let can_sink = !polyhedron.convex && radius > 0.0;
         Self {
             areas: areas.collect(),
-            closest: ClosestPoints::new(&polyhedron),
+            open: if can_sink { open_facets(&polyhedron, &closest, radius) } else { Vec::new() },
+            closest,
             sharp: SharpEdges::new(&polyhedron, sharp_angle_deg.to_radians()),
             polyhedron,
             radius,
@@ -67,12 +72,12 @@ impl Rolling {
         (start, end): (&Spot, &Spot),
         legs: &[Leg],
         path: &mut SurfacePath,
-        rolled: &mut Vec<Waypoint>,
+        room: &mut Room,
     ) -> bool {
         let ends = ((&start.contact, start.place), (&end.contact, end.place));
         lift(&self.polyhedron, self.radius, ends.0, ends.1, legs, path);
         path.length = length(legs, &end.contact);
-        self.polyhedron.convex || self.radius == 0.0 || self.follower().follow(path, rolled)
+        self.polyhedron.convex || self.radius == 0.0 || self.follower().follow(path, room)
     }
 
     /// A contact that the fingertip can have, uniform over the facets' area.
@@ -93,8 +98,12 @@ impl Rolling {
 
     /// The contact straight ahead; where the fingertip would sink in there, pushed out to where it touches.
     pub fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
-        let reached = walk(&self.polyhedron, from, self.spot(from).place, direction_O, distance);
-        if self.polyhedron.convex { reached } else { self.follower().settled(reached) }
+        self.settled(walk(&self.polyhedron, from, self.spot(from).place, direction_O, distance))
+    }
+
+    /// The contact, or where the fingertip touches if it is pushed out from one at which it would sink in.
+    pub fn settled(&self, contact: Contact) -> Contact {
+        if self.polyhedron.convex { contact } else { self.follower().settled(contact) }
     }
 
     /// The straight distance (m) to the nearest sharp edge.
@@ -103,8 +112,8 @@ impl Rolling {
     }
 
     fn follower(&self) -> Follower<'_> {
-        let (polyhedron, closest) = (&self.polyhedron, &self.closest);
-        Follower { polyhedron, closest, radius: self.radius, step: self.step }
+        let Self { polyhedron, closest, open, radius, step, .. } = self;
+        Follower { polyhedron, closest, open, radius: *radius, step: *step }
     }
 
     /// The vertex farthest along a direction, with that direction as its normal: a contact that every fingertip reaches.

@@ -125,6 +125,35 @@ fn hollows_are_followed_without_penetration() {
     assert!(share.iter().all(|&followed| followed >= 36), "{share:?} of 40 followed");
 }
 
+/// Planning sets fingers down at places of a path: what the path says of the contact there must be true.
+///
+/// Places where the ball touches two facets at once, as it does all along an inner edge, have two true answers.
+#[test]
+fn a_place_of_a_path_names_the_point_that_the_fingertip_touches() {
+    for mesh in [
+        meshes::angle_block(0.06, 0.03),
+        meshes::torus(0.03, 0.012, 40, 16),
+        meshes::bumpy(0.03, 0.12, 2),
+        meshes::bumpy(0.03, 0.06, 3),
+    ] {
+        let surface = surface(&mesh);
+        let mut random = Random::from_key(12, 0, 0, 0);
+        for _ in 0..40 {
+            let (from, to) = (surface.sample(&mut random), surface.sample(&mut random));
+            let Some(path) = lifted(&surface, &from, &to) else { continue };
+            for _ in 0..60 {
+                let claimed = path.at(random.unit());
+                let touched = surface.project(&claimed.tip_center(RADIUS), Some(claimed.facet));
+                let (off, sunk) = ((touched.contact.p_OC - claimed.p_OC).norm(), RADIUS - touched.distance);
+                assert!(
+                    off < 2e-6 || sunk < 1e-9,
+                    "{off} m beside, {sunk} m deep: {claimed:?} {from:?} {to:?}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn a_fingertip_too_thick_for_the_hole_says_no() {
     // The hole's radius is 5 mm, the fingertip's 10 mm.

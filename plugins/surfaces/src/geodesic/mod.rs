@@ -18,12 +18,13 @@ mod search;
 mod trace;
 mod windows;
 
+use crate::hollows::Room;
 use crate::lift::Leg;
 use crate::rolling::Rolling;
 use bound::{Ball, LowerBound};
 use regrasp_api::{
     Build, BuildError, Built, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings,
-    SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, Waypoint, check_range, check_settings, inventory,
+    SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, check_range, check_settings, inventory,
 };
 use schemars::JsonSchema;
 use search::Search;
@@ -94,7 +95,7 @@ pub struct Geodesic {
 struct Workspace {
     search: Scratch,
     legs: Vec<Leg>,
-    rolled: Vec<Waypoint>,
+    room: Room,
 }
 
 thread_local! {
@@ -125,7 +126,7 @@ impl SurfaceParam for Geodesic {
     ) -> Result<bool, CallError> {
         context.count_call(Slot::Surface);
         WORKSPACE.with_borrow_mut(|workspace| {
-            let Workspace { search, legs, rolled } = workspace;
+            let Workspace { search, legs, room } = workspace;
             let polyhedron = &self.rolling.polyhedron;
             let bound = LowerBound::new(&self.balls, &from.p_OC, &to.p_OC);
             let (start, target) = (self.rolling.spot(from), self.rolling.spot(to));
@@ -135,7 +136,7 @@ impl SurfaceParam for Geodesic {
                 return Ok(false);
             };
             trace::trace(polyhedron, search, last, &to.p_OC, legs);
-            Ok(self.rolling.roll((&start, &target), legs, path, rolled))
+            Ok(self.rolling.roll((&start, &target), legs, path, room))
         })
     }
 

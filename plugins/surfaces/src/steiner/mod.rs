@@ -25,6 +25,7 @@
 
 mod graph;
 
+use crate::hollows::Room;
 use crate::lift::Leg;
 use crate::rolling::{Rolling, Spot};
 use crate::strip::Strip;
@@ -107,7 +108,7 @@ struct Workspace {
     points: Vec<u32>,
     strip: Strip,
     legs: Vec<Leg>,
-    rolled: Vec<Waypoint>,
+    room: Room,
 }
 
 thread_local! {
@@ -203,7 +204,7 @@ impl SurfaceParam for Steiner {
                 return Ok(false);
             };
             self.trace(workspace, &found, ends);
-            Ok(self.rolling.roll(ends, &workspace.legs, path, &mut workspace.rolled))
+            Ok(self.rolling.roll(ends, &workspace.legs, path, &mut workspace.room))
         })
     }
 

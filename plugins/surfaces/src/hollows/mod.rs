@@ -1,0 +1,222 @@
+//! The fingertip's path on a solid that is not convex: where its ball would sink in, it slides over the hollow.
+//!
+//! The path that rolls over the facets one by one is followed as long as the ball touches nothing else (`blocked`). Where it
+//! would sink in, the ball leaves the path at the last free place and goes to the next free place along the offset surface:
+//! straight, pushed out (or back) wherever the straight way does not touch (`touch`). In a concave edge both places are the
+//! same, and the contact jumps from one facet to the other.
+
+mod blocked;
+mod touch;
+
+use crate::closest::{ClosestPoints, closest_of_facet};
+use crate::lift::angle;
+use crate::polyhedron::Polyhedron;
+use blocked::Piece;
+pub(crate) use blocked::open_facets;
+use regrasp_api::{Contact, Projection, SurfacePath, Vec3, Waypoint, slerp_normals};
+use touch::Touch;
+
+/// Depth (m) to which the ball may sink into the facets: rounding, far below every tolerance of a plan.
+const SINK: f64 = 1e-10;
+/// The same (m) between two places in a hollow, each of which may sink in to [`SINK`].
+const SLACK: f64 = 5.0 * SINK;
+/// How far (m) a way between two waypoints may stray from the offset surface.
+const STRAY: f64 = 5e-7;
+/// How far (m), in fingertip radii, the contact of a waypoint may lie from the point that the ball touches: so far the
+/// normals differ (rad).
+const ASIDE: f64 = 1e-4;
+/// Two centres this close (m) are one place.
+const SAME: f64 = 2e-10;
+/// Places looked at in one hollow before the fingertip counts as stuck.
+const MOST_PLACES: usize = 2000;
+
+/// Memory of a path's making, kept between calls; nothing of one call shows in the next.
+#[derive(Debug, Default)]
+pub(crate) struct Room {
+    rolled: Vec<Waypoint>,
+    /// Facets near one piece of the path.
+    near: Vec<u32>,
+}
+
+/// Follows a path with a ball of one radius.
+pub(crate) struct Follower<'a> {
+    pub polyhedron: &'a Polyhedron,
+    pub closest: &'a ClosestPoints,
+    /// For each facet whether the ball can sink into nothing while it touches there.
+    pub open: &'a [bool],
+    pub radius: f64,
+    /// Largest distance (m) between two places that are looked at on turns and in hollows.
+    pub step: f64,
+}
+
+impl Follower<'_> {
+    /// Whether the ball at a contact touches nothing but the contact point.
+    pub fn is_free(&self, contact: &Contact, sink: f64) -> bool {
+        self.closest.is_clear(self.polyhedron, &contact.tip_center(self.radius), self.radius - sink)
+    }
+
+    /// Rewrites `path`, whose waypoints roll over the facets, so that the ball sinks into nothing; `false` where it cannot go.
+    pub fn follow(&self, path: &mut SurfacePath, room: &mut Room) -> bool {
+        let Room { rolled, near } = room;
+        rolled.clear();
+        rolled.append(&mut path.waypoints);
+        let (first, last) = (rolled[0].contact, rolled[rolled.len() - 1].contact);
+        path.waypoints.push(Waypoint { contact: first, lift_length: 0.0 });
+        // The ends were given: they may be as inexact as the caller's arithmetic.
+        if !self.is_free(&first, STRAY) || !self.is_free(&last, STRAY) {
+            return false;
+        }
+        let mut left_at: Option<Touch> = None;
+        for pair in rolled.windows(2) {
+            let travel = pair[1].lift_length - pair[0].lift_length;
+            let piece = Piece { from: pair[0].contact, to: pair[1].contact, travel };
+            if !self.pass(path, &piece, &mut left_at, near) {
+                return false;
+            }
+        }
+        // An end that was given is free, whatever rounding says.
+        left_at.is_none_or(|left| self.slide(path, &left, &self.touch(last), near))
+    }
+
+    /// Appends a piece of the rolled path; `left_at` is where the ball left it for a hollow, before and after.
+    fn pass(
+        &self,
+        path: &mut SurfacePath,
+        piece: &Piece,
+        left_at: &mut Option<Touch>,
+        near: &mut Vec<u32>,
+    ) -> bool {
+        let blocked = self.blocked(piece, SINK, near);
+        if let Some(left) = left_at.as_ref().filter(|_| blocked.is_none_or(|[enter, _]| enter > 0.0)) {
+            if !self.slide(path, left, &self.touch(piece.from), near) {
+                return false;
+            }
+            *left_at = None;
+        }
+        if let Some([enter, leave]) = blocked {
+            let left = left_at.get_or_insert_with(|| {
+                let contact = if enter > 0.0 { piece.at(enter) } else { piece.from };
+                self.advance(path, contact);
+                self.touch(contact)
+            });
+            if leave >= 1.0 {
+                return true;
+            }
+            if !self.slide(path, left, &self.touch(piece.at(leave)), near) {
+                return false;
+            }
+            *left_at = None;
+        }
+        self.advance(path, piece.to);
+        true
+    }
+
+    fn tip(&self, p_OF: &Vec3, hint: u32) -> Projection {
+        self.closest.project(self.polyhedron, p_OF, Some(hint))
+    }
+
+    /// Appends the way of the ball between two places along the offset surface.
+    fn slide(&self, path: &mut SurfacePath, from: &Touch, to: &Touch, near: &mut Vec<u32>) -> bool {
+        let mut budget = MOST_PLACES;
+        let steps = ((to.p_OF - from.p_OF).norm() / self.step).ceil().max(1.0);
+        let mut before = *from;
+        for step in 1..=steps as usize {
+            let t = step as f64 / steps;
+            let here = if t < 1.0 { self.settle(&from.p_OF.lerp(&to.p_OF, t)) } else { Some(*to) };
+            match here.and_then(|here| self.join(path, (&before, &here), 0, &mut budget, near)) {
+                Some(reached) => before = reached,
+                None => return false,
+            }
+        }
+        // At the same place the contact may have to jump once more.
+        self.advance(path, to.contact);
+        true
+    }
+
+    /// Appends waypoints until the ways between them stay on the offset surface; the touch at the end, or `None` if stuck.
+    fn join(
+        &self,
+        path: &mut SurfacePath,
+        (from, to): (&Touch, &Touch),
+        depth: i32,
+        budget: &mut usize,
+        near: &mut Vec<u32>,
+    ) -> Option<Touch> {
+        let to = &self.keep(from, to);
+        let gap = (to.p_OF - from.p_OF).norm();
+        if gap < SAME || self.is_direct(from, to, gap, near) {
+            self.advance(path, to.contact);
+            return Some(*to);
+        }
+        // The ball may touch what is ahead already.
+        let ahead = &self.keep(to, from);
+        if ahead.contact.facet != from.contact.facet && self.is_direct(ahead, to, gap, near) {
+            self.advance(path, ahead.contact);
+            self.advance(path, to.contact);
+            return Some(*to);
+        }
+        // Halves of a continuous way get shorter and shorter; those of a leap do not.
+        if *budget == 0 || gap > 16.0 * self.step * 0.7_f64.powi(depth) {
+            return None;
+        }
+        *budget -= 1;
+        if let Some((left, taken)) = self.corner(from, to, gap) {
+            self.join(path, (from, &left), depth + 1, budget, near)?;
+            self.advance(path, taken.contact);
+            return self.join(path, (&taken, to), depth + 1, budget, near);
+        }
+        let middle = || self.settle(&from.p_OF.lerp(&to.p_OF, 0.5));
+        let via = self.knee(from, to).or_else(middle)?;
+        let via = self.join(path, (from, &via), depth + 1, budget, near)?;
+        self.join(path, (&via, to), depth + 1, budget, near)
+    }
+
+    /// Whether the contact may go straight from one place to the next.
+    fn is_direct(&self, from: &Touch, to: &Touch, gap: f64, near: &mut Vec<u32>) -> bool {
+        if gap > 1.5 * self.step {
+            return false;
+        }
+        let (a, b) = (from.contact, to.contact);
+        if a.facet == b.facet && (a.n_O - b.n_O).norm_squared() < 1e-20 {
+            // A straight line between two points of a facet stays in it.
+            let piece = Piece { from: a, to: Contact { n_O: a.n_O, ..b }, travel: gap };
+            return self.blocked(&piece, SLACK, near).is_none();
+        }
+        let places: &[f64] = if gap > self.step / 2.0 { &[0.5, 0.25, 0.75] } else { &[0.5] };
+        places.iter().all(|&t| {
+            let contact = between(&a, &b, t);
+            let p_OF = contact.tip_center(self.radius);
+            let tip = self.tip(&p_OF, contact.facet);
+            let is_there = |tip: &Projection| (tip.contact.p_OC - contact.p_OC).norm() < ASIDE * self.radius;
+            // In a concave edge the ball touches both sides: either is right.
+            let touches = |facet: u32| {
+                let other = closest_of_facet(self.polyhedron, &p_OF, facet);
+                other.distance < tip.distance + SLACK && is_there(&other)
+            };
+            (tip.distance - self.radius).abs() < STRAY
+                && (is_there(&tip) || touches(a.facet) || touches(b.facet))
+        })
+    }
+
+    /// Appends a contact, with the way of the ball's centre as its length.
+    fn advance(&self, path: &mut SurfacePath, contact: Contact) {
+        let last = path.waypoints[path.waypoints.len() - 1].contact;
+        let gap = (contact.tip_center(self.radius) - last.tip_center(self.radius)).norm();
+        if contact != last {
+            path.push(contact, gap.max(self.arc(&last, &contact)));
+        }
+    }
+
+    /// Length (m) of the centre's arc where the ball turns about its contact; 0 where the contact moves.
+    fn arc(&self, from: &Contact, to: &Contact) -> f64 {
+        if (to.p_OC - from.p_OC).norm() < SAME { self.radius * angle(&from.n_O, &to.n_O) } else { 0.0 }
+    }
+}
+
+/// The contact between two neighbouring ones, as [`SurfacePath::at`] has it.
+fn between(a: &Contact, b: &Contact, t: f64) -> Contact {
+    if t >= 1.0 {
+        return *b;
+    }
+    Contact { facet: a.facet, p_OC: a.p_OC.lerp(&b.p_OC, t), n_O: slerp_normals(&a.n_O, &b.n_O, t) }
+}
