@@ -14,7 +14,7 @@ use crate::solid::Gap;
 use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use nalgebra::Point3;
-use regrasp_api::{Body, MAX_FINGERS, Vec3};
+use regrasp_api::{Body, BodyPair, MAX_FINGERS, Vec3};
 use regrasp_plan::{Extreme, Place};
 
 /// How often a step between samples is halved before the clearance there counts as not certified: what remains is a hundredth of the step.
@@ -182,6 +182,23 @@ impl<'s> ClearanceCheck<'s> {
         self.smallest = self.smallest.min(distance);
         let pair = Some((Body::Object, Body::Fingertip(regrasp_api::FingerIndex(finger as u8))));
         self.gauge.note(distance, || Place { pair, ..place() });
+    }
+
+    /// The closest pair of those compared at a state, with its exact distance (m), beside the moving fingertip of a regrasp and the object.
+    pub(crate) fn closest(&mut self, leg: &Leg<'_>, frames: &Frames) -> Option<(f64, BodyPair)> {
+        let mut closest: Option<(f64, BodyPair)> = None;
+        for pair in 0..self.scene.pairs.len() {
+            let least = closest.map_or(f64::INFINITY, |(distance, _)| distance);
+            if !self.compared(leg, pair) || self.balls(pair, frames) >= least {
+                continue;
+            }
+            let distance = self.exact(pair, frames, true);
+            if distance < least {
+                let (a, b) = self.scene.pairs[pair];
+                closest = Some((distance, (self.scene.bodies[a].body, self.scene.bodies[b].body)));
+            }
+        }
+        closest
     }
 
     /// The exact distance of a pair (m); not positive where the bodies overlap.

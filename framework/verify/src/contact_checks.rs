@@ -110,8 +110,7 @@ impl<'s> ContactChecks<'s> {
         for (finger, found) in touches.iter_mut().enumerate().take(self.hand.fingers.len()) {
             let Some(claimed) = &leg.states[at].record.contacts[finger] else { continue };
             let p_OTip = frames.p_OTip(finger);
-            let touch = Touch::find(self.scene, &p_OTip, self.hand.tip_radius, self.facets[finger]);
-            self.facets[finger] = touch.facet;
+            let touch = self.touch(finger, frames);
             let fraction = sample as f64 / SAMPLES as f64;
             let place = || Place { finger: Some(finger), ..leg.between(state, fraction) };
             self.closure.note(touch.gap.abs(), place);
@@ -130,6 +129,14 @@ impl<'s> ContactChecks<'s> {
             *found = Some(touch);
         }
         touches
+    }
+
+    /// Where a fingertip comes closest to the object, whether it holds it or not.
+    pub(crate) fn touch(&mut self, finger: usize, frames: &Frames) -> Touch {
+        let near = self.facets[finger];
+        let touch = Touch::find(self.scene, &frames.p_OTip(finger), self.hand.tip_radius, near);
+        self.facets[finger] = touch.facet;
+        touch
     }
 
     /// Holds a contact as the plan states it against where the fingertip really is.

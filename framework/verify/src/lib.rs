@@ -13,6 +13,7 @@ mod hand;
 mod lift;
 mod motion_checks;
 mod scene;
+mod series;
 mod shape;
 mod solid;
 mod stability;
@@ -20,5 +21,6 @@ mod track;
 mod verdict;
 mod walk;
 
+pub use series::{StateFigures, series};
 pub use verdict::{Check, Verdict};
 pub use walk::verify;

@@ -60,7 +60,7 @@ fn refuse(note: String) -> Verdict {
     Verdict::new(vec![form.check()], None)
 }
 
-fn prepare(problem: &Problem) -> Result<(Chains, ObjectModel), String> {
+pub(crate) fn prepare(problem: &Problem) -> Result<(Chains, ObjectModel), String> {
     let hand = Chains::new(&problem.hand)?;
     if let ObjectShape::Mesh(source) = &problem.object.shape
         && source.file.is_some()
@@ -74,12 +74,17 @@ fn prepare(problem: &Problem) -> Result<(Chains, ObjectModel), String> {
 }
 
 /// How far from zero each joint comes, by its limits or by the plan.
-fn travel(hand: &Chains, legs: &[Leg<'_>]) -> Vec<f64> {
+pub(crate) fn travel(hand: &Chains, legs: &[Leg<'_>]) -> Vec<f64> {
     let mut travel: Vec<f64> = hand.joints().map(|joint| joint.lower.abs().max(joint.upper.abs())).collect();
     for state in legs.iter().flat_map(|leg| &leg.states) {
         travel.iter_mut().zip(&state.joints).for_each(|(most, q)| *most = most.max(q.abs()));
     }
     travel
+}
+
+/// The object's weight in the hand's frame (N).
+pub(crate) fn weight_H(plan: &Plan, object: &ObjectModel) -> Vec3 {
+    Vec3::from(plan.scenario.problem.gravity) * object.mass
 }
 
 struct Walk<'w> {
@@ -108,7 +113,7 @@ impl Walk<'_> {
             contacts: ContactChecks::new(self.hand, self.scene, tolerances, self.plan.claims.transfer_law),
             clearance: ClearanceCheck::new(self.hand, self.scene, tolerances.clearance),
             lift: LiftCheck::new(self.hand, self.scene, tolerances, lift),
-            stability: StabilityCheck::new(&self.plan.claims, self.weight_H()),
+            stability: StabilityCheck::new(&self.plan.claims, weight_H(self.plan, self.object)),
         };
         let mut frames = vec![Frames::new(self.hand); SAMPLES + 1];
         let mut touches = [[None; MAX_FINGERS]; SAMPLES + 1];
@@ -116,11 +121,6 @@ impl Walk<'_> {
             self.segment(leg, &mut sampled, &mut frames, &mut touches);
         }
         self.gather(sampled, tolerances)
-    }
-
-    /// The object's weight in the hand's frame (N).
-    fn weight_H(&self) -> Vec3 {
-        Vec3::from(self.plan.scenario.problem.gravity) * self.object.mass
     }
 
     /// The segment's first state.

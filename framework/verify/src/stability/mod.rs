@@ -174,6 +174,26 @@ impl StabilityCheck {
         Ok(solved)
     }
 
+    /// The figure of one grasp by itself: the certified margin of the solver's best force; the slack of the solver's best forces where the
+    /// plan claims that they hold a load. 0 or less where the grasp is not proved stable, `None` where stability is not checked.
+    pub(crate) fn figure(
+        &mut self,
+        leg: &Leg<'_>,
+        R_HO: &Rotation,
+        touches: &[Option<Touch>; MAX_FINGERS],
+    ) -> Option<f64> {
+        let contacts = self.contacts(leg, &self.cone?, touches);
+        if let Some(load) = &mut self.load {
+            return Some(load.prove(&contacts, R_HO).unwrap_or_else(|slack| slack.min(0.0)));
+        }
+        if let Some(last) = self.margins.last().filter(|last| last.contacts == contacts) {
+            return Some(last.lower);
+        }
+        let lower = best(&contacts).map_or(0.0, |proof| force::margin(&contacts, &proof));
+        self.margins.push(Margin { contacts, lower, place: Place::default() });
+        Some(lower)
+    }
+
     /// The smallest margin, for the certificate: bounds that a carried force left loose are sharpened with the best one.
     pub(crate) fn extreme(&mut self) -> Option<Extreme> {
         for _ in 0..MOST_REFINEMENTS {

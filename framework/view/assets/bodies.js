@@ -1,0 +1,136 @@
+// Shapes and the object as meshes of three.js.
+
+import * as THREE from "three";
+import { cross, dot, norm, scale, sub, unit, add, fromZ } from "./pose.js";
+
+/** Colours of the fingers: told apart by people who see few colours (M. Okabe, K. Ito, "Color universal design", 2008). */
+export const FINGER_COLORS = ["#e69f00", "#56b4e9", "#009e73", "#cc79a7", "#d55e00", "#f0e442", "#0072b2", "#8c8c8c"];
+
+/** Facets that meet at less than this are one smooth surface (cosine). */
+const CREASE = Math.cos((32 * Math.PI) / 180);
+
+export function place(object, pose) {
+    object.position.set(...pose.p);
+    object.quaternion.set(pose.q[1], pose.q[2], pose.q[3], pose.q[0]);
+}
+
+/** A mesh for a shape of the plan, in the frame of what it belongs to; `extent` is how far an endless one is drawn (m). */
+export function shapeMesh(shape, material, extent) {
+    const mesh = new THREE.Mesh(shapeGeometry(shape, extent), material);
+    const group = new THREE.Group();
+    const [x, y, z, w, i, j, k] = shape.pose;
+    place(group, { p: [x, y, z], q: [w, i, j, k] });
+    if (shape.kind === "capsule") {
+        place(mesh, { p: scale(add(shape.from, shape.to), 0.5), q: fromZ(unit(sub(shape.to, shape.from))) });
+    } else if (shape.kind === "half-space") {
+        const n = unit(shape.normal);
+        place(mesh, { p: scale(n, shape.offset), q: fromZ(n) });
+    }
+    mesh.castShadow = shape.kind !== "half-space";
+    mesh.receiveShadow = true;
+    group.add(mesh);
+    return group;
+}
+
+function shapeGeometry(shape, extent) {
+    switch (shape.kind) {
+        case "sphere":
+            return new THREE.SphereGeometry(shape.radius, 32, 20);
+        case "box":
+            return new THREE.BoxGeometry(...shape.size);
+        case "capsule": {
+            const geometry = new THREE.CapsuleGeometry(shape.radius, norm(sub(shape.to, shape.from)), 8, 24);
+            return geometry.rotateX(Math.PI / 2);
+        }
+        case "half-space":
+            return new THREE.CircleGeometry(extent, 64);
+        default:
+            return meshGeometry(shape);
+    }
+}
+
+/** A mesh with the normals that look right: smooth over blunt edges, flat at sharp ones. */
+export function meshGeometry({ vertices, facets }) {
+    const vertex = (i) => [vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]];
+    const count = facets.length / 3;
+    const normals = [];
+    const around = new Map();
+    for (let f = 0; f < count; f++) {
+        const [a, b, c] = [0, 1, 2].map((k) => vertex(facets[3 * f + k]));
+        normals.push(cross(sub(b, a), sub(c, a)));
+        for (let k = 0; k < 3; k++) {
+            const corner = facets[3 * f + k];
+            if (!around.has(corner)) around.set(corner, []);
+            around.get(corner).push(f);
+        }
+    }
+    const units = normals.map(unit);
+    const [positions, shading] = [new Float32Array(9 * count), new Float32Array(9 * count)];
+    for (let f = 0; f < count; f++) {
+        for (let k = 0; k < 3; k++) {
+            const corner = facets[3 * f + k];
+            const smooth = around.get(corner).filter((other) => dot(units[f], units[other]) > CREASE);
+            const normal = unit(smooth.map((other) => normals[other]).reduce(add, [0, 0, 0]));
+            positions.set(vertex(corner), 9 * f + 3 * k);
+            shading.set(normal, 9 * f + 3 * k);
+        }
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+    geometry.setAttribute("normal", new THREE.BufferAttribute(shading, 3));
+    return geometry;
+}
+
+/** The paint of the object: eight octants, the four dark ones of different colours, so that no turn leaves it as it was. */
+export function painted(geometry) {
+    geometry.computeBoundingBox();
+    const center = geometry.boundingBox.getCenter(new THREE.Vector3());
+    const material = new THREE.MeshStandardMaterial({ roughness: 0.55, metalness: 0.0 });
+    const color = (hex) => ({ value: new THREE.Color(hex) });
+    const paint = {
+        bodyCenter: { value: center },
+        paintLight: color("#f1ede4"),
+        paintA: color("#2f3e5c"),
+        paintB: color("#5d7391"),
+        paintC: color("#8f9bb0"),
+        paintD: color("#b5525c"),
+    };
+    material.onBeforeCompile = (shader) => {
+        Object.assign(shader.uniforms, paint);
+        shader.vertexShader = shader.vertexShader
+            .replace("#include <common>", "#include <common>\nvarying vec3 bodyPoint;")
+            .replace("#include <begin_vertex>", "#include <begin_vertex>\nbodyPoint = position;");
+        shader.fragmentShader = shader.fragmentShader
+            .replace("#include <common>", `#include <common>\n${PAINT_HEADER}`)
+            .replace("#include <color_fragment>", PAINT);
+    };
+    return material;
+}
+
+const PAINT_HEADER = `
+varying vec3 bodyPoint;
+uniform vec3 bodyCenter, paintLight, paintA, paintB, paintC, paintD;`;
+
+const PAINT = `
+vec3 octant = bodyPoint - bodyCenter;
+vec3 soft = max(fwidth(octant), vec3(1e-7));
+vec3 side = clamp(octant / soft, -1.0, 1.0);
+vec3 dark = octant.x > 0.0 ? (octant.y > 0.0 ? paintA : paintB) : (octant.y > 0.0 ? paintC : paintD);
+diffuseColor.rgb = mix(paintLight, dark, 0.5 - 0.5 * side.x * side.y * side.z);`;
+
+/** Three arrows along the axes of a frame: red x, green y, blue z. */
+export function axes(length) {
+    const group = new THREE.Group();
+    const turns = [[0.7071, 0, 0.7071, 0], [0.7071, -0.7071, 0, 0], [1, 0, 0, 0]];
+    ["#e5484d", "#46a758", "#3e7bfa"].forEach((color, i) => {
+        const material = new THREE.MeshBasicMaterial({ color });
+        const shaft = new THREE.CylinderGeometry(length * 0.014, length * 0.014, length, 10).rotateX(Math.PI / 2);
+        const head = new THREE.ConeGeometry(length * 0.045, length * 0.14, 16).rotateX(Math.PI / 2);
+        const arrow = new THREE.Group();
+        arrow.add(new THREE.Mesh(shaft.translate(0, 0, length / 2), material));
+        arrow.add(new THREE.Mesh(head.translate(0, 0, length), material));
+        place(arrow, { p: [0, 0, 0], q: turns[i] });
+        group.add(arrow);
+    });
+    return group;
+}

@@ -1,0 +1,37 @@
+//! Why a plan cannot be shown.
+
+use regrasp_world::{HandError, WorldError};
+use thiserror::Error;
+
+/// A plan cannot be shown.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ViewError {
+    /// The hand makes no sense.
+    #[error("the plan's hand: {0}")]
+    Hand(#[from] HandError),
+    /// The object or an obstacle makes no sense.
+    #[error("the plan's {0}")]
+    World(#[from] WorldError),
+    /// A pose of palm, link or obstacle cannot be read.
+    #[error("`{key}`: {reason}")]
+    Pose {
+        /// Where in the plan's problem.
+        key: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A segment or state does not fit the hand, or holds a number that is not finite.
+    #[error("segment {segment}, state {state}: {reason}; `regrasp verify` says more")]
+    State {
+        /// The segment, counted from 0.
+        segment: usize,
+        /// The state within the segment, counted from 0.
+        state: usize,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+    /// What is to be shown beside the plan does not belong to it.
+    #[error("{0}")]
+    Foreign(String),
+}
