@@ -20,6 +20,7 @@ pub struct Arguments {
 pub enum Command {
     Plan(PlanArgs),
     Verify(VerifyArgs),
+    Compare(crate::compare::CompareArgs),
     Replay(crate::replay::ReplayArgs),
     Plugins(PluginsArgs),
     Scenarios(ScenariosArgs),
@@ -132,7 +133,7 @@ pub struct NewPluginArgs {
     pub output: Option<PathBuf>,
 }
 
-/// Print the JSON schema of scenario files or of hand files.
+/// Print the JSON schema of scenario files, hand files or study files.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  regrasp schema > scenario.schema.json")]
 pub struct SchemaArgs {
@@ -148,13 +149,15 @@ pub enum Kind {
     Scenario,
     /// Hand files.
     Hand,
+    /// Study files.
+    Study,
 }
 
 fn whole_number(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("it must be a whole number in 0..={}", u64::MAX))
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
+pub fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if (0.001..=1e7).contains(&seconds) => Ok(seconds),
         _ => Err("it must be a number of seconds in 0.001..=10000000".into()),

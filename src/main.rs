@@ -3,6 +3,7 @@
 //! Exit codes: 0 done; 2 bad input; 3 no plan within the budget; 4 a plan that does not verify, or a replay that does not arrive; 130 interrupted.
 
 mod args;
+mod compare;
 mod failure;
 mod new_plugin;
 mod overrides;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
     let done = match &arguments.command {
         Command::Plan(args) => plan::run(args),
         Command::Verify(args) => verify::run(args),
+        Command::Compare(args) => compare::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Plugins(args) => plugins::run(args),
         Command::Scenarios(args) => scenarios::run(args),

@@ -9,18 +9,24 @@ use serde_json::Value;
 
 /// Applies the changes; `--use` before `--set`, whatever their order.
 pub fn apply(scenario: &mut Scenario, args: &PlanArgs) -> Result<(), Failure> {
-    for text in &args.uses {
-        use_plugin(&mut scenario.choices, text)?;
-    }
-    for text in &args.sets {
-        set(&mut scenario.choices, text)?;
-    }
+    apply_plugins(&mut scenario.choices, &args.uses, &args.sets)?;
+    limit_nodes(scenario, args.max_nodes);
     let budget = &mut scenario.problem.limits.budget;
-    if let Some(max_nodes) = args.max_nodes {
-        budget.max_nodes = max_nodes as usize;
-    }
     budget.time_limit = args.time_limit.or(budget.time_limit);
     Ok(())
+}
+
+/// Applies `--use` and then `--set`.
+pub fn apply_plugins(choices: &mut Choices, uses: &[String], sets: &[String]) -> Result<(), Failure> {
+    uses.iter().try_for_each(|text| use_plugin(choices, text))?;
+    sets.iter().try_for_each(|text| set(choices, text))
+}
+
+/// Applies `--max-nodes`.
+pub fn limit_nodes(scenario: &mut Scenario, max_nodes: Option<u64>) {
+    if let Some(max_nodes) = max_nodes {
+        scenario.problem.limits.budget.max_nodes = max_nodes as usize;
+    }
 }
 
 fn use_plugin(choices: &mut Choices, text: &str) -> Result<(), Failure> {
@@ -42,7 +48,7 @@ fn set(choices: &mut Choices, text: &str) -> Result<(), Failure> {
 }
 
 /// Slot and key of `local-planner.transfer.max_slip`; a slot's own name may have a dot in it.
-fn split_slot(path: &str) -> Result<Option<(Slot, &str)>, HostError> {
+pub fn split_slot(path: &str) -> Result<Option<(Slot, &str)>, HostError> {
     let key_of = |slot: Slot| Some((slot, path.strip_prefix(slot.name())?.strip_prefix('.')?));
     match Slot::ALL.into_iter().find_map(key_of) {
         Some((_, "")) => Ok(None),
@@ -55,7 +61,7 @@ fn split_slot(path: &str) -> Result<Option<(Slot, &str)>, HostError> {
 }
 
 /// A value as TOML reads it; what is no TOML value is taken as a text, so that quotes can be left away.
-fn parse(text: &str) -> Result<Value, String> {
+pub fn parse(text: &str) -> Result<Value, String> {
     let table: Result<toml::Table, _> = toml::from_str(&format!("value = {text}"));
     let value = match table {
         Ok(mut table) => table.remove("value").unwrap_or(toml::Value::String(text.to_owned())),
@@ -69,7 +75,7 @@ fn parse(text: &str) -> Result<Value, String> {
     serde_json::to_value(value).map_err(|error| error.to_string())
 }
 
-fn refuse(option: &str, text: &str, error: &HostError) -> Failure {
+pub fn refuse(option: &str, text: &str, error: &HostError) -> Failure {
     Failure::bad_input(format!("`--{option} {text}`: {error}"))
 }
 

@@ -22,6 +22,12 @@ pub struct Change {
 }
 
 impl Change {
+    /// Makes the change.
+    pub fn apply(&self, choices: &mut Choices) {
+        self.id.iter().for_each(|id| choices.use_plugin(self.slot, id));
+        self.settings.iter().for_each(|(key, value)| choices.set(self.slot, key, value.clone()));
+    }
+
     /// A few words: the plugin's name without its role, and the settings, such as `interleaved end=0.8`.
     pub fn label(&self) -> String {
         let id = self.id.as_deref().map(|id| id.rsplit_once('/').map_or(id, |(_, name)| name).to_owned());
@@ -55,13 +61,9 @@ impl VariantDraft {
     /// The choices of a scenario with the changes; plugins before settings, in whatever order they were given.
     fn choices(&self, base: &Choices) -> Choices {
         let mut choices = base.clone();
-        for change in &self.changes {
-            change.id.iter().for_each(|id| choices.use_plugin(change.slot, id));
-        }
-        for change in &self.changes {
-            let settings = change.settings.iter();
-            settings.for_each(|(key, value)| choices.set(change.slot, key, value.clone()));
-        }
+        let (plugins, settings): (Vec<&Change>, Vec<&Change>) =
+            self.changes.iter().partition(|change| change.id.is_some());
+        plugins.into_iter().chain(settings).for_each(|change| change.apply(&mut choices));
         choices
     }
 

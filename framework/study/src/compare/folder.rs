@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 /// The name of the file that says what the study is.
 pub const STUDY_FILE: &str = "study.json";
 
-/// The folder of the plans that a study keeps.
-const PLANS: &str = "plans";
+/// The name of the folder of the plans that a study keeps.
+pub const PLANS: &str = "plans";
 
 /// A study's folder, open for work; nobody else can open it meanwhile.
 pub struct Folder {

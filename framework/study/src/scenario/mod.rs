@@ -12,7 +12,7 @@ pub use error::*;
 pub use file::*;
 pub use library::*;
 
-use document::{Document, key_path};
+pub(crate) use document::{Document, key_path};
 use regrasp_api::{HandDescription, ObjectModel, Problem, Slot};
 use regrasp_host::{Choices, HostError, Registry, Step, near};
 use regrasp_world::{
@@ -102,7 +102,7 @@ fn stem(file: &str) -> String {
     Path::new(file).file_stem().map_or(file.into(), |stem| stem.to_string_lossy().into_owned())
 }
 
-fn read(path: &Path) -> Result<String, ScenarioError> {
+pub(crate) fn read(path: &Path) -> Result<String, ScenarioError> {
     let unreadable =
         |cause: String| ScenarioError::Unreadable { place: Place::file(&path.display().to_string()), cause };
     let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;

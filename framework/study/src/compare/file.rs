@@ -1,0 +1,268 @@
+//! Study files: comparisons that are too long for a command line, or that are to be kept.
+
+use super::{Change, VariantDraft, factorial};
+use crate::scenario::{self, Document, PluginTable, PluginTables, Scenario, ScenarioError, key_path};
+use regrasp_api::Slot;
+use regrasp_host::{Registry, slot_by_name};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// How many seeds a study may have.
+pub const MOST_SEEDS: u64 = 1_000_000;
+
+/// How many seeds a study has unless it says otherwise.
+pub const DEFAULT_SEEDS: u64 = 20;
+
+/// A study file: what is compared on which scenarios. Variants are either the full factorial of `[[vary]]`, or listed one by one as
+/// `[[variant]]`.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct StudyFile {
+    /// Built-in scenarios by name, or scenario files, relative to this file.
+    pub scenarios: Vec<String>,
+    /// Built-in scenarios by the dozen, before those in `scenarios`.
+    pub suite: Option<Suite>,
+    /// How many seeds; 20 where absent.
+    #[schemars(range(min = 1, max = 1_000_000))]
+    pub seeds: Option<u64>,
+    /// The first seed; 0 where absent.
+    pub first_seed: Option<u64>,
+    /// Most seconds for one run.
+    #[schemars(range(min = 0.001, max = 1e7))]
+    pub time_limit: Option<f64>,
+    /// Most nodes to generate for each goal.
+    #[schemars(range(min = 1, max = 10_000_000))]
+    pub max_nodes: Option<u64>,
+    /// Plugins for all variants, where these do not choose others.
+    pub plugins: PluginTables,
+    /// Factors: all combinations of their levels are compared. The first level of each makes the baseline.
+    pub vary: Vec<FactorTable>,
+    /// Variants; the first is the baseline.
+    pub variant: Vec<VariantTable>,
+}
+
+/// A set of built-in scenarios.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Suite {
+    /// The paper's three problems.
+    Paper,
+    /// Every built-in scenario.
+    All,
+}
+
+/// The paper's problems among the built-in scenarios.
+const PAPER: [&str; 3] = ["sphere", "cubic", "ellip-obst"];
+
+impl Suite {
+    /// Every suite.
+    pub const ALL: [Self; 2] = [Self::Paper, Self::All];
+
+    /// The name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::All => "all",
+        }
+    }
+
+    /// The names of its scenarios.
+    pub fn scenarios(self) -> Vec<&'static str> {
+        match self {
+            Self::Paper => PAPER.to_vec(),
+            Self::All => scenario::SCENARIOS.iter().map(|built_in| built_in.name).collect(),
+        }
+    }
+}
+
+/// A factor: one slot and what it is filled with in turn.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FactorTable {
+    /// The slot, such as `sampler` or `local-planner.regrasp`.
+    pub slot: String,
+    /// The levels: plugins, settings, or both.
+    pub levels: Vec<PluginTable>,
+}
+
+/// A variant of its own name.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VariantTable {
+    /// What it is called.
+    pub name: String,
+    /// What it changes.
+    #[serde(default)]
+    pub plugins: PluginTables,
+}
+
+/// What is to be compared on what, read and checked.
+#[derive(Default)]
+pub struct StudyRequest {
+    /// The scenarios, with the changes for all variants made.
+    pub scenarios: Vec<Scenario>,
+    /// The variants.
+    pub variants: Vec<VariantDraft>,
+    /// How many seeds.
+    pub seeds: Option<u64>,
+    /// The first seed.
+    pub first_seed: Option<u64>,
+    /// Most seconds for one run.
+    pub time_limit_s: Option<f64>,
+    /// Most nodes to generate for each goal.
+    pub max_nodes: Option<u64>,
+}
+
+/// Reads a study file.
+pub fn load_study(path: &Path, registry: &Registry) -> Result<StudyRequest, ScenarioError> {
+    let name = path.display().to_string();
+    let document = Document::parse(&name, &scenario::read(path)?)?;
+    let content: StudyFile = document.read()?;
+    check_numbers(&document, &content)?;
+    let variants = variants(&document, &content, registry)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let base = changes(&content.plugins);
+    base.iter().try_for_each(|change| check_plugin(&document, change, "plugins", registry))?;
+    let mut scenarios = Vec::new();
+    for name in scenario_names(&document, &content, folder)? {
+        let mut scenario = scenario::load(&name, registry)?;
+        base.iter().for_each(|change| change.apply(&mut scenario.choices));
+        scenarios.push(scenario);
+    }
+    Ok(StudyRequest {
+        scenarios,
+        variants,
+        seeds: content.seeds,
+        first_seed: content.first_seed,
+        time_limit_s: content.time_limit,
+        max_nodes: content.max_nodes,
+    })
+}
+
+/// The JSON schema of study files, as text for a person or an editor to read.
+pub fn study_schema() -> String {
+    let schema = schemars::schema_for!(StudyFile).to_value();
+    serde_json::to_string_pretty(&schema).expect("a JSON value is JSON")
+}
+
+fn check_numbers(document: &Document, content: &StudyFile) -> Result<(), ScenarioError> {
+    let refuse = |key: &str, value: String, range: String| {
+        let message = format!("`{key}` = {value} is outside {range}");
+        Err(document.refuse(&key_path(key), message))
+    };
+    if let Some(seeds) = content.seeds.filter(|seeds| !(1..=MOST_SEEDS).contains(seeds)) {
+        return refuse("seeds", seeds.to_string(), format!("1..={MOST_SEEDS}"));
+    }
+    let last = u64::MAX - MOST_SEEDS;
+    if let Some(first) = content.first_seed.filter(|first| *first > last) {
+        return refuse("first_seed", first.to_string(), format!("0..={last}"));
+    }
+    if let Some(limit) = content.time_limit.filter(|limit| !(0.001..=1e7).contains(limit)) {
+        return refuse("time_limit", limit.to_string(), "0.001..=10000000".into());
+    }
+    match content.max_nodes.filter(|nodes| !(1..=10_000_000).contains(nodes)) {
+        Some(nodes) => refuse("max_nodes", nodes.to_string(), "1..=10000000".into()),
+        None => Ok(()),
+    }
+}
+
+fn scenario_names(
+    document: &Document,
+    content: &StudyFile,
+    folder: &Path,
+) -> Result<Vec<String>, ScenarioError> {
+    let suite = content.suite.map(Suite::scenarios).unwrap_or_default();
+    let place = |name: &String| match scenario::find(scenario::SCENARIOS, name) {
+        Some(_) => name.clone(),
+        // A word that is neither a built-in name nor looks like a file is for `load` to explain.
+        None if !folder.join(name).exists() && Path::new(name).extension().is_none() => name.clone(),
+        None => folder.join(name).display().to_string(),
+    };
+    let names: Vec<String> =
+        suite.into_iter().map(str::to_owned).chain(content.scenarios.iter().map(place)).collect();
+    if names.is_empty() {
+        let message = "give `scenarios`, such as [\"sphere\", \"cubic\"], or a `suite`".to_owned();
+        return Err(document.refuse(&key_path("scenarios"), message));
+    }
+    Ok(names)
+}
+
+fn variants(
+    document: &Document,
+    content: &StudyFile,
+    registry: &Registry,
+) -> Result<Vec<VariantDraft>, ScenarioError> {
+    if !content.vary.is_empty() && !content.variant.is_empty() {
+        let message = "give either `vary`, of which all combinations are compared, or `variant`, not both";
+        return Err(document.refuse(&key_path("variant"), message.to_owned()));
+    }
+    if content.variant.is_empty() {
+        let factors = content.vary.iter().enumerate();
+        let factors = factors.map(|(i, table)| factor(document, table, i, registry));
+        return Ok(factorial(&factors.collect::<Result<Vec<_>, _>>()?));
+    }
+    let drafts = content.variant.iter().enumerate().map(|(i, table)| {
+        let changes = changes(&table.plugins);
+        let key = format!("variant[{i}].plugins");
+        changes.iter().try_for_each(|change| check_plugin(document, change, &key, registry))?;
+        Ok(VariantDraft { name: table.name.clone(), changes })
+    });
+    drafts.collect()
+}
+
+fn factor(
+    document: &Document,
+    table: &FactorTable,
+    index: usize,
+    registry: &Registry,
+) -> Result<Vec<Change>, ScenarioError> {
+    let key = format!("vary[{index}]");
+    let slot = slot_by_name(&table.slot).map_err(|error| {
+        let key = format!("{key}.slot");
+        document.refuse(&key_path(&key), format!("`{key}`: {error}"))
+    })?;
+    if table.levels.is_empty() {
+        let message = format!("`{key}.levels` is empty; give it plugins, such as [{{ use = \"…\" }}]");
+        return Err(document.refuse(&key_path(&format!("{key}.levels")), message));
+    }
+    let levels = table.levels.iter().enumerate().map(|(k, level)| {
+        let change = change(slot, level);
+        check_id(document, &change, &format!("{key}.levels[{k}]"), registry)?;
+        Ok(change)
+    });
+    levels.collect()
+}
+
+fn change(slot: Slot, table: &PluginTable) -> Change {
+    Change { slot, id: table.id.clone(), settings: table.settings.clone() }
+}
+
+/// What tables of plugins change.
+fn changes(tables: &PluginTables) -> Vec<Change> {
+    let changes = Slot::ALL.into_iter().map(|slot| change(slot, tables.table(slot)));
+    changes.filter(|change| change.id.is_some() || !change.settings.is_empty()).collect()
+}
+
+fn check_plugin(
+    document: &Document,
+    change: &Change,
+    tables: &str,
+    registry: &Registry,
+) -> Result<(), ScenarioError> {
+    check_id(document, change, &format!("{tables}.{}", change.slot.name()), registry)
+}
+
+/// Refuses a plugin that does not exist where it is named; settings are looked at with each scenario's own.
+fn check_id(
+    document: &Document,
+    change: &Change,
+    key: &str,
+    registry: &Registry,
+) -> Result<(), ScenarioError> {
+    let Some(id) = &change.id else { return Ok(()) };
+    let key = format!("{key}.use");
+    let refuse =
+        |error: regrasp_host::HostError| document.refuse(&key_path(&key), format!("`{key}`: {error}"));
+    registry.lookup(change.slot, id).map(drop).map_err(refuse)
+}

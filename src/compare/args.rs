@@ -1,0 +1,132 @@
+//! The form of `regrasp compare`.
+
+use crate::args::{LibraryArgs, seconds};
+use clap::Args;
+use regrasp::study::compare::{MOST_SEEDS, Shard, Suite};
+use std::path::PathBuf;
+
+/// Compare combinations of plugins: every scenario, planned by every variant with every seed, every plan verified.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Each `--vary` names plugins of one slot, or values of one setting; all combinations are compared, and the one of the first names is the \
+baseline. Runs are made in parallel, each on one thread. Ctrl-C, or even a kill, keeps what is finished: the same command goes on from there \
+and makes no run again. A run that fails, panics or takes too long is a row of the study, not its end.\n\n\
+DIR gets `runs.csv` (a row a run), `summary.csv` and `summary.md` (figures over the seeds and what may be said of them), `report.html`, \
+`ompl/` (logs for OMPL's tools and Planner Arena), `study.json` (all that is needed to repeat it), `runs.jsonl` (the runs in full) and \
+`plans/` (for each scenario the baseline's plan with the first seed).\n\n\
+Examples:\n  regrasp compare sphere cubic --vary stability-test=force-closure,socp --seeds 20 -o study\n  \
+regrasp compare --suite paper --vary graph-strategy.end=0.3,0.5,0.8 --vary sampler=rlg,projection -o alpha\n  \
+regrasp compare --suite paper --seeds 100 -o table1      # prints the paper's Table 1 beside ours\n  \
+regrasp compare --study mine.toml -o study               # `regrasp schema study` says what may be in it\n  \
+regrasp compare --suite all --shard 2/8 -o part2         # the second of eight parts\n  \
+regrasp compare --merge part1 part2 part3 -o study")]
+pub struct CompareArgs {
+    /// Scenario files, or names of built-in scenarios.
+    pub scenarios: Vec<String>,
+    /// Add the paper's three problems, or every built-in scenario.
+    #[arg(long, value_name = "paper|all", value_parser = suite)]
+    pub suite: Option<Suite>,
+    /// Take scenarios and variants from a study file.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scenarios", "suite", "vary"])]
+    pub study: Option<PathBuf>,
+    /// Compare these plugins in a slot, or these values of a setting; can be repeated.
+    #[arg(long, value_name = "SLOT[.KEY]=A,B…")]
+    pub vary: Vec<String>,
+    /// Plan each problem with this many seeds [default: 20].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=MOST_SEEDS))]
+    pub seeds: Option<u64>,
+    /// The first of the seeds [default: 0].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=u64::MAX - MOST_SEEDS))]
+    pub first_seed: Option<u64>,
+    /// Fill a slot of all variants with another plugin; can be repeated.
+    #[arg(long = "use", value_name = "SLOT=ID")]
+    pub uses: Vec<String>,
+    /// Change a setting of the plugin in a slot of all variants; can be repeated.
+    #[arg(long = "set", value_name = "SLOT.KEY=VALUE")]
+    pub sets: Vec<String>,
+    #[command(flatten)]
+    pub libraries: LibraryArgs,
+    /// Stop each run after this many seconds.
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
+    pub time_limit: Option<f64>,
+    /// Generate at most this many nodes for each goal.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    pub max_nodes: Option<u64>,
+    /// Make this many runs at once, each on one thread [default: one for each core].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Leave out scenarios that a variant's plugins do not support, instead of refusing the study.
+    #[arg(long)]
+    pub skip_unsupported: bool,
+    /// Make only the I-th of N parts of the study.
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    pub shard: Option<Shard>,
+    /// Join the parts in these folders.
+    #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = [
+        "scenarios", "suite", "study", "vary", "seeds", "first_seed", "uses", "sets", "load", "time_limit", "max_nodes",
+        "threads", "skip_unsupported", "shard",
+    ])]
+    pub merge: Vec<PathBuf>,
+    /// The folder of the study; begun before with the same command, it is gone on with.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl CompareArgs {
+    /// The command, word by word, without what changes nothing in the results.
+    pub fn command(&self) -> Vec<String> {
+        let mut words = ["regrasp", "compare"].map(str::to_owned).to_vec();
+        words.extend(self.scenarios.iter().cloned());
+        let mut option = |name: &str, value: Option<String>| {
+            words.extend(value.into_iter().flat_map(|value| [format!("--{name}"), value]));
+        };
+        option("suite", self.suite.map(|suite| suite.name().to_owned()));
+        option("study", self.study.as_ref().map(|path| path.display().to_string()));
+        self.vary.iter().for_each(|text| option("vary", Some(text.clone())));
+        option("seeds", self.seeds.map(|seeds| seeds.to_string()));
+        option("first-seed", self.first_seed.map(|seed| seed.to_string()));
+        self.uses.iter().for_each(|text| option("use", Some(text.clone())));
+        self.sets.iter().for_each(|text| option("set", Some(text.clone())));
+        self.libraries.load.iter().for_each(|path| option("load", Some(path.display().to_string())));
+        option("time-limit", self.time_limit.map(|limit| limit.to_string()));
+        option("max-nodes", self.max_nodes.map(|nodes| nodes.to_string()));
+        words.extend(self.skip_unsupported.then(|| "--skip-unsupported".to_owned()));
+        words
+    }
+}
+
+fn suite(text: &str) -> Result<Suite, String> {
+    let named = |suite: &Suite| suite.name() == text;
+    Suite::ALL.into_iter().find(named).ok_or_else(|| "it must be `paper` or `all`".to_owned())
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
+    let number = |text: &str| text.parse::<u64>().ok();
+    let parts = text.split_once('/').and_then(|(part, of)| Some((number(part)?, number(of)?)));
+    match parts {
+        Some((part, of)) if (1..=of).contains(&part) && of <= MOST_SEEDS => Ok(Shard { part, of }),
+        _ => Err(format!("it must be I/N with I in 1..=N and N in 1..={MOST_SEEDS}, such as 2/8")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_counted_from_one() {
+        assert_eq!(shard("2/8"), Ok(Shard { part: 2, of: 8 }));
+        for bad in ["0/8", "9/8", "8", "a/b", "1/0", "-1/3", "1/2/3"] {
+            assert!(shard(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn suites_are_named() {
+        assert_eq!(suite("paper"), Ok(Suite::Paper));
+        assert!(suite("papers").is_err());
+    }
+}

@@ -1,0 +1,95 @@
+//! `--vary`: what is compared, from the command line.
+
+use crate::Failure;
+use crate::overrides::{parse, refuse, split_slot};
+use regrasp::api::Slot;
+use regrasp::host::{Registry, slot_by_name};
+use regrasp::study::compare::Change;
+use serde_json::{Map, Value};
+
+/// The levels of `SLOT=ID,ID…` or `SLOT.KEY=VALUE,VALUE…`.
+pub fn factor(text: &str, registry: &Registry) -> Result<Vec<Change>, Failure> {
+    let form = || {
+        Failure::bad_input(format!("`--vary {text}` is not of the form SLOT=ID,ID… or SLOT.KEY=VALUE,VALUE…"))
+    };
+    let (path, list) = text.split_once('=').ok_or_else(form)?;
+    let setting = Slot::ALL.iter().all(|slot| slot.name() != path);
+    let found = if setting { split_slot(path) } else { Ok(None) };
+    if let Some((slot, key)) = found.map_err(|error| refuse("vary", text, &error))? {
+        let values = values(list).map_err(|reason| wrong(text, &reason))?;
+        return Ok(values.into_iter().map(|value| set(slot, key, value)).collect());
+    }
+    let slot = slot_by_name(path).map_err(|error| refuse("vary", text, &error))?;
+    if list.split(',').any(|id| id.trim().is_empty()) {
+        return Err(form());
+    }
+    let plugin = |id: &str| {
+        registry.lookup(slot, id).map_err(|error| refuse("vary", text, &error))?;
+        Ok(Change { slot, id: Some(id.to_owned()), settings: Map::new() })
+    };
+    list.split(',').map(str::trim).map(plugin).collect()
+}
+
+fn wrong(text: &str, reason: &str) -> Failure {
+    Failure::bad_input(format!("`--vary {text}`: {reason}"))
+}
+
+fn set(slot: Slot, key: &str, value: Value) -> Change {
+    Change { slot, id: None, settings: Map::from_iter([(key.to_owned(), value)]) }
+}
+
+/// Values separated by commas: TOML values, or words without quotes.
+fn values(list: &str) -> Result<Vec<Value>, String> {
+    match parse(&format!("[{list}]")) {
+        // A number that is not finite has no place in JSON.
+        Ok(Value::Array(values)) if values.contains(&Value::Null) => {
+            Err(format!("{list} is outside the finite numbers"))
+        }
+        Ok(Value::Array(values)) if !values.is_empty() => Ok(values),
+        _ if list.split(',').any(|word| word.trim().is_empty()) => Err("a value is missing".into()),
+        _ => list.split(',').map(|word| parse(word.trim())).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn registry() -> Registry {
+        Registry::linked().expect("the built-in plugins differ")
+    }
+
+    #[test]
+    fn plugins_and_settings_are_told_apart() {
+        let plugins = factor("local-planner.regrasp=rrt,lift-slide-touch", &registry()).unwrap();
+        assert_eq!(plugins.len(), 2);
+        assert_eq!((plugins[0].slot, plugins[0].id.as_deref()), (Slot::RegraspPlanner, Some("rrt")));
+        let settings = factor("graph-strategy.end=0.3,0.8", &registry()).unwrap();
+        assert_eq!(settings[1].settings, *json!({"end": 0.8}).as_object().unwrap());
+        assert_eq!(settings[1].label(), "end=0.8");
+    }
+
+    #[test]
+    fn values_are_toml_or_words() {
+        assert_eq!(values("1,2.5"), Ok(vec![json!(1), json!(2.5)]));
+        assert_eq!(values("[1,2],[3]"), Ok(vec![json!([1, 2]), json!([3])]));
+        assert_eq!(values("fast,slow"), Ok(vec![json!("fast"), json!("slow")]));
+        assert!(values("1,nan").is_err() && values("a,").is_err() && values("").is_err());
+    }
+
+    #[test]
+    fn what_does_not_exist_is_refused_with_what_does() {
+        for (text, hint) in [
+            ("samler=rlg,projection", "did you mean `sampler`"),
+            ("sampler=rlg,projectoin", "did you mean `sampler/projection`"),
+            ("sampler=rlg,", "is not of the form"),
+            ("sampler", "is not of the form"),
+            ("local-planner=rrt", "local-planner.regrasp"),
+            ("sampler.tries=", "a value is missing"),
+        ] {
+            let failure = format!("{:?}", factor(text, &registry()).unwrap_err());
+            assert!(failure.contains(hint), "{text}: {failure}");
+        }
+    }
+}
