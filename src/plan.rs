@@ -3,18 +3,21 @@
 use crate::args::PlanArgs;
 use crate::progress::Line;
 use crate::watch::Watch;
-use crate::{Failure, overrides, plugins, report, say, say_json};
+use crate::{Failure, export, overrides, plugins, report, say, say_json};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
 use regrasp::study::{Run, RunOptions, Setup, scenario};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     let registry = plugins::registry(&args.libraries)?;
     let mut scenario = scenario::load(&args.scenario, &registry).map_err(Failure::bad_input)?;
+    remark(&scenario.remarks);
     overrides::apply(&mut scenario, args)?;
     // A place where nothing can be written is refused before any work is done.
     args.output.as_deref().map_or(Ok(()), regrasp::plan::check_place).map_err(Failure::bad_input)?;
+    export::check_grasps(args.grasps.as_deref())?;
     let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::bad_input)?;
     let watch = Watch::start(scenario.problem.limits.budget.time_limit);
     let line = Line::new();
@@ -24,6 +27,10 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     line.finish();
     let ran = ran.map_err(Failure::bad_input)?;
     let saved = save(args.output.as_deref(), &ran)?;
+    if let Some(path) = &args.grasps {
+        let count = export::save_grasps(path, &scenario, &setup, &ran)?;
+        remark(&[format!("{count} stable grasps are in {}", path.display())]);
+    }
     let summary = report::Summary {
         scenario: &scenario,
         choices: setup.choices(),
@@ -40,6 +47,14 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
         }
     }
     ending(&ran, &summary)
+}
+
+/// Tells on standard error what was chosen while the scenario was read.
+fn remark(remarks: &[String]) {
+    for remark in remarks {
+        // A reader of standard error that has gone away is no failure.
+        let _ = writeln!(io::stderr(), "note: {remark}");
+    }
 }
 
 /// Writes the plan: under the wished name only if it is complete and verified.

@@ -67,7 +67,7 @@ pub struct PaperFigures {
     pub graph_nodes: usize,
 }
 
-/// The hand: exactly one of the keys.
+/// The hand: exactly one of `builtin`, `file` and `urdf`; the other keys say how a URDF is read.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HandChoice {
@@ -77,6 +77,31 @@ pub struct HandChoice {
     /// A hand file, relative to the scenario file.
     #[serde(default)]
     pub file: Option<String>,
+    /// A URDF file, relative to the scenario file; `regrasp hand FILE.urdf` shows how it is understood.
+    #[serde(default)]
+    pub urdf: Option<String>,
+    /// The URDF's fingertip links, one a finger, in the order in which the fingers are counted; guessed and printed where absent.
+    #[serde(default)]
+    pub tips: Vec<String>,
+    /// Radius of the balls that stand for the fingertips (m); where absent, that of the tip links' own balls.
+    #[serde(default)]
+    pub fingertip_radius: Option<f64>,
+    /// Centres of these balls in the frames of the tip links (m): one for all, or one for each finger; where absent, they are fitted to the tip
+    /// links' shapes.
+    #[serde(default)]
+    pub tip_offset: Vec<[f64; 3]>,
+    /// The URDF's link whose frame is the hand's; where absent, the last one that all fingertips hang on.
+    #[serde(default)]
+    pub palm: Option<String>,
+    /// Folders that hold the packages of `package://` paths, relative to the scenario file.
+    #[serde(default)]
+    pub packages: Vec<String>,
+    /// The most convex pieces (1 to 64) that each mesh is taken apart into; 1, its convex hull, where absent.
+    #[serde(default)]
+    pub mesh_pieces: Option<usize>,
+    /// Largest acceleration of every joint (rad/s²); where absent, what the URDF says, or else 20.
+    #[serde(default)]
+    pub acceleration: Option<f64>,
 }
 
 /// One table for each slot.

@@ -6,6 +6,7 @@
 mod document;
 mod error;
 mod file;
+mod hand;
 mod library;
 
 pub use error::*;
@@ -15,10 +16,8 @@ pub use library::*;
 pub(crate) use document::{Document, key_path};
 use regrasp_api::{HandDescription, ObjectModel, Problem, Slot};
 use regrasp_host::{Choices, HostError, Registry, Step, near};
-use regrasp_world::{
-    ChainHand, check_problem, check_units, embed_hand, embed_object, embed_obstacles, load_object,
-};
-use std::path::{Path, PathBuf};
+use regrasp_world::{ChainHand, check_problem, check_units, embed_object, embed_obstacles, load_object};
+use std::path::Path;
 use std::sync::Arc;
 
 /// A checked scenario: it stands alone, with no file left to read.
@@ -39,6 +38,8 @@ pub struct Scenario {
     pub object: ObjectModel,
     /// The plugins; those that the file names or sets have full ids and complete settings.
     pub choices: Choices,
+    /// What was chosen because neither the scenario nor the files that it names say it: for a user to see.
+    pub remarks: Vec<String>,
     document: Document,
 }
 
@@ -78,7 +79,7 @@ pub fn from_text(
     let document = Document::parse(file, text)?;
     let content: ScenarioFile = document.read()?;
     let choices = choices(&document, &content.plugins, registry)?;
-    let (hand, description) = hand(&document, &content.hand, folder)?;
+    let hand::LoadedHand { hand, description, remarks } = hand::load(&document, &content.hand, folder)?;
     let mut problem = problem(&content, description);
     check_problem(&problem).map_err(|error| refused(&document, &error))?;
     embed_obstacles(&mut problem.obstacle, folder).map_err(|error| refused(&document, &error))?;
@@ -94,6 +95,7 @@ pub fn from_text(
         hand: Arc::new(hand),
         object,
         choices,
+        remarks,
         document,
     })
 }
@@ -133,33 +135,6 @@ fn problem(content: &ScenarioFile, hand: HandDescription) -> Problem {
         workspace: content.workspace,
         limits: content.limits,
     }
-}
-
-/// The hand, built and checked, and its description with all meshes inside.
-fn hand(
-    scenario: &Document,
-    choice: &HandChoice,
-    folder: &Path,
-) -> Result<(ChainHand, HandDescription), ScenarioError> {
-    let (document, folder) = match (&choice.builtin, &choice.file) {
-        (Some(name), None) => {
-            let built_in = find(HANDS, name).ok_or_else(|| unknown("hand", name, HANDS))?;
-            (Document::parse(built_in.name, built_in.text)?, PathBuf::new())
-        }
-        (None, Some(file)) => {
-            let path = folder.join(file);
-            let document = Document::parse(&path.display().to_string(), &read(&path)?)?;
-            (document, path.parent().unwrap_or(Path::new("")).to_owned())
-        }
-        _ => {
-            let message = "give either `builtin` (the name of a built-in hand) or `file`".to_owned();
-            return Err(scenario.refuse(&key_path("hand"), message));
-        }
-    };
-    let mut description: HandDescription = document.read()?;
-    embed_hand(&mut description, &folder).map_err(|error| refused(&document, &error))?;
-    let hand = ChainHand::new(description.clone()).map_err(|error| refused(&document, &error))?;
-    Ok((hand, description))
 }
 
 /// The plugins, each table checked so that an error has its line.

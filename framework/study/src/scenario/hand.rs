@@ -1,0 +1,127 @@
+//! The hand of a scenario: a built-in one, a hand file, or a URDF.
+
+use super::document::{Document, key_path};
+use super::{HANDS, HandChoice, Place, ScenarioError, find, read, refused, unknown};
+use regrasp_api::HandDescription;
+use regrasp_world::{ChainHand, UrdfError, UrdfHand, UrdfOptions, UrdfReport, embed_hand, read_urdf};
+use std::path::{Path, PathBuf};
+
+/// A hand that was built and checked.
+pub(super) struct LoadedHand {
+    pub hand: ChainHand,
+    /// With all meshes inside.
+    pub description: HandDescription,
+    /// What a user should know of how the file was understood.
+    pub remarks: Vec<String>,
+}
+
+/// The hand that the scenario names; files are looked for in `folder`.
+pub(super) fn load(
+    scenario: &Document,
+    choice: &HandChoice,
+    folder: &Path,
+) -> Result<LoadedHand, ScenarioError> {
+    if choice.urdf.is_none()
+        && let Some(key) = choice.urdf_key()
+    {
+        let message = format!("`{key}` says how a URDF is to be read; give `urdf` too, or remove it");
+        return Err(scenario.refuse(&key_path(&format!("hand.{key}")), message));
+    }
+    match (&choice.builtin, &choice.file, &choice.urdf) {
+        (Some(name), None, None) => {
+            let built_in = find(HANDS, name).ok_or_else(|| unknown("hand", name, HANDS))?;
+            described(Document::parse(built_in.name, built_in.text)?, Path::new(""))
+        }
+        (None, Some(file), None) => {
+            let path = folder.join(file);
+            let document = Document::parse(&path.display().to_string(), &read(&path)?)?;
+            described(document, path.parent().unwrap_or(Path::new("")))
+        }
+        (None, None, Some(file)) => from_urdf(scenario, choice, &folder.join(file), folder),
+        _ => {
+            let message =
+                "give one of `builtin` (the name of a built-in hand), `file` (a hand file) and `urdf`"
+                    .to_owned();
+            Err(scenario.refuse(&key_path("hand"), message))
+        }
+    }
+}
+
+fn described(document: Document, folder: &Path) -> Result<LoadedHand, ScenarioError> {
+    let mut description: HandDescription = document.read()?;
+    embed_hand(&mut description, folder).map_err(|error| refused(&document, &error))?;
+    let hand = ChainHand::new(description.clone()).map_err(|error| refused(&document, &error))?;
+    Ok(LoadedHand { hand, description, remarks: Vec::new() })
+}
+
+fn from_urdf(
+    scenario: &Document,
+    choice: &HandChoice,
+    path: &Path,
+    folder: &Path,
+) -> Result<LoadedHand, ScenarioError> {
+    let UrdfHand { description, report } =
+        read_urdf(path, &choice.urdf_options(folder)).map_err(|error| urdf_refused(scenario, error))?;
+    let hand = ChainHand::new(description.clone()).map_err(|error| refused(scenario, &error))?;
+    Ok(LoadedHand { hand, description, remarks: remarks(path, &report) })
+}
+
+/// What was chosen because the scenario does not say it.
+fn remarks(path: &Path, report: &UrdfReport) -> Vec<String> {
+    let file = path.display();
+    let guess = report.tips_guessed.then(|| {
+        format!(
+            "{file}: fingertips guessed: tips = {:?}; `regrasp hand {file}` shows the whole hand",
+            report.tips
+        )
+    });
+    let notes = report.notes.iter().map(|note| format!("{file}: {note}"));
+    guess.into_iter().chain(notes).collect()
+}
+
+/// A URDF's fault with its own place; what concerns the file as a whole, with the scenario's key.
+fn urdf_refused(scenario: &Document, error: UrdfError) -> ScenarioError {
+    let file = error.file.display().to_string();
+    let Some(line) = error.line else {
+        let named = error.message.split('`').nth(1).unwrap_or_default();
+        let key = if HandChoice::URDF_KEYS.contains(&named) { named } else { "urdf" };
+        let message = format!("{} (reading {file})", error.message);
+        return scenario.refuse(&key_path(&format!("hand.{key}")), message);
+    };
+    let text = std::fs::read_to_string(&error.file).unwrap_or_default();
+    let excerpt = text.lines().nth(line - 1).unwrap_or_default().trim_end().chars().take(120).collect();
+    let place = Box::new(Place { file, key: String::new(), line: Some(line), excerpt });
+    ScenarioError::Value { place, message: error.message }
+}
+
+impl HandChoice {
+    /// The keys that say how a URDF is read.
+    const URDF_KEYS: [&'static str; 7] =
+        ["tips", "fingertip_radius", "tip_offset", "palm", "packages", "mesh_pieces", "acceleration"];
+
+    /// The first of these keys that is given.
+    fn urdf_key(&self) -> Option<&'static str> {
+        let given = [
+            !self.tips.is_empty(),
+            self.fingertip_radius.is_some(),
+            !self.tip_offset.is_empty(),
+            self.palm.is_some(),
+            !self.packages.is_empty(),
+            self.mesh_pieces.is_some(),
+            self.acceleration.is_some(),
+        ];
+        Self::URDF_KEYS.into_iter().zip(given).find_map(|(key, given)| given.then_some(key))
+    }
+
+    fn urdf_options(&self, folder: &Path) -> UrdfOptions {
+        UrdfOptions {
+            tips: self.tips.clone(),
+            fingertip_radius: self.fingertip_radius,
+            tip_offset: self.tip_offset.clone(),
+            palm: self.palm.clone(),
+            packages: self.packages.iter().map(|package| -> PathBuf { folder.join(package) }).collect(),
+            mesh_pieces: self.mesh_pieces,
+            acceleration: self.acceleration,
+        }
+    }
+}
