@@ -5,6 +5,7 @@ mod closest;
 pub mod geodesic;
 mod hollows;
 mod lift;
+pub mod parametric;
 mod polyhedron;
 mod rolling;
 mod sharp;

@@ -1,0 +1,419 @@
+//! `surface/parametric`: its closed forms against independent formulas, its contacts and paths against the facets.
+
+mod common;
+
+use common::{length, meshes, path, reference};
+use regrasp_api::{BuildError, Contact, Mesh, ObjectModel, Primitive, Random, Settings, SurfaceParam, Vec3};
+use regrasp_surfaces::geodesic::{Geodesic, GeodesicSettings};
+use regrasp_surfaces::parametric::{ClosedForm, Curve, Parametric, ParametricSettings};
+use std::f64::consts::PI;
+
+fn curve(form: &ClosedForm, a: &Vec3, b: &Vec3) -> Curve {
+    let mut curve = Curve::default();
+    form.shortest(a, b, 1e-3, &mut curve);
+    assert_eq!((curve.points[0], curve.points[curve.points.len() - 1]), (*a, *b));
+    let step = curve.points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).fold(0.0, f64::max);
+    assert!(step <= 1e-3 * (1.0 + 1e-9), "{step} m between two points");
+    curve
+}
+
+fn object(primitive: Primitive, mesh: Mesh) -> ObjectModel {
+    ObjectModel::new(mesh, Some(primitive), 0.1, 0.8)
+}
+
+fn surface(primitive: Primitive, mesh: &Mesh, radius: f64) -> Parametric {
+    Parametric::new(&ParametricSettings::default(), &object(primitive, mesh.clone()), radius).unwrap()
+}
+
+#[test]
+fn a_ball_has_great_circles() {
+    let form = ClosedForm::new(&Primitive::Sphere { radius: 0.03 });
+    let mut random = Random::from_key(1, 0, 0, 0);
+    for i in 0..500 {
+        let u = random.direction();
+        // Also nearly the same and nearly opposite points.
+        let v = match i % 4 {
+            0 => (u + random.direction() * 1e-6).normalize(),
+            1 => (-u + random.direction() * 1e-6).normalize(),
+            2 => random.direction(),
+            _ => -u,
+        };
+        let (a, b) = (u * 0.03, v * 0.03);
+        let curve = curve(&form, &a, &b);
+        let arc = 0.03 * 2.0 * ((u - v).norm() / 2.0).min(1.0).asin();
+        let near_opposite = (u + v).norm() < 1e-3;
+        assert!((curve.length - arc).abs() < if near_opposite { 1e-6 } else { 1e-12 });
+        let plane = u.cross(&v);
+        for p in &curve.points {
+            assert!((p.norm() - 0.03).abs() < 1e-15);
+            assert!(plane.norm() < 1e-3 || plane.normalize().dot(p).abs() < 1e-12);
+        }
+        let other = 0.03 * (PI - 2.0 * ((u + v).norm() / 2.0).min(1.0).asin());
+        assert!(!near_opposite || (curve.length - other).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn over_a_box_all_unfoldings_are_tried() {
+    // Dudeney's spider and fly, in feet: 40, over five of the six faces.
+    let form = ClosedForm::new(&Primitive::Cuboid { half_size: Vec3::new(15.0, 6.0, 6.0) });
+    let mut path = Curve::default();
+    form.shortest(&Vec3::new(15.0, 0.0, 5.0), &Vec3::new(-15.0, 0.0, -5.0), 1.0, &mut path);
+    assert!((path.length - 40.0).abs() < 1e-12, "{}", path.length);
+    let mut random = Random::from_key(2, 0, 0, 0);
+    for half in [Vec3::repeat(0.0225), Vec3::new(0.04, 0.015, 0.006), Vec3::new(0.03, 0.03, 0.002)] {
+        let mesh = meshes::cuboid(half);
+        let form = ClosedForm::new(&Primitive::Cuboid { half_size: half });
+        for _ in 0..150 {
+            let [from, to] = [(); 2].map(|()| anywhere(&mesh, &mut random));
+            let best = reference::shortest(&mesh, &from, &to);
+            let length = curve(&form, &from.p_OC, &to.p_OC).length;
+            assert!((length - best).abs() < 1e-9, "{length} instead of {best}: {from:?} {to:?}");
+        }
+    }
+}
+
+/// A random point of the mesh: inside a facet, on an edge or at a vertex.
+fn anywhere(mesh: &Mesh, random: &mut Random) -> Contact {
+    let facet = random.index(mesh.facets().len()) as u32;
+    let [a, b, c] = mesh.corners(facet);
+    let (t, kind) = (random.unit(), random.index(6));
+    let s = if kind > 1 { random.unit() * (1.0 - t) } else { 0.0 };
+    let p_OC = if kind == 0 { a } else { a * (1.0 - s - t) + b * t + c * s };
+    Contact { facet, p_OC, n_O: mesh.normal(facet) }
+}
+
+#[test]
+fn settings_out_of_range_are_refused() {
+    for (json, key) in [
+        (r#"{"spacing": 0.0}"#, "spacing"),
+        (r#"{"spacing": 1.0}"#, "spacing"),
+        (r#"{"step": 0.1}"#, "step"),
+        (r#"{"sharp_angle_deg": 0.0}"#, "sharp_angle_deg"),
+    ] {
+        let error = ParametricSettings::from_json(json).unwrap_err().to_string();
+        assert!(error.contains(key), "{json}: {error}");
+    }
+}
+
+#[test]
+fn objects_without_closed_form_are_refused_with_what_to_use() {
+    let mesh = meshes::bumpy(0.03, 0.1, 2);
+    let refused = |object: &ObjectModel| {
+        let error = Parametric::new(&ParametricSettings::default(), object, 0.01).unwrap_err();
+        assert!(
+            matches!(&error, BuildError::Unsupported(text) if text.contains("surface/geodesic")),
+            "{error}"
+        );
+    };
+    refused(&ObjectModel::new(mesh.clone(), None, 0.1, 0.8));
+    refused(&object(Primitive::Sphere { radius: 0.03 }, mesh));
+}
+
+#[test]
+fn over_a_box_paths_are_those_of_the_default_surface() {
+    let half = Vec3::new(0.03, 0.02, 0.015);
+    let mesh = meshes::cuboid(half);
+    let ours = surface(Primitive::Cuboid { half_size: half }, &mesh, 0.01);
+    let exact = GeodesicSettings { tolerance: 1e-9, ..GeodesicSettings::default() };
+    let exact = Geodesic::new(&exact, &mesh, 0.01).unwrap();
+    let mut random = Random::from_key(3, 0, 0, 0);
+    for _ in 0..200 {
+        let [from, to] = [(); 2].map(|()| ours.sample(&mut random));
+        let (a, b) = (path(&ours, &from, &to), path(&exact, &from, &to));
+        assert!((a.length - b.length).abs() < 1e-9, "{} instead of {}", a.length, b.length);
+        assert!((a.lift_length() - b.lift_length()).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn over_facets_paths_become_those_of_the_ball() {
+    let primitive = Primitive::Sphere { radius: 0.03 };
+    let mut random = Random::from_key(4, 0, 0, 0);
+    let ends: Vec<_> = (0..40).map(|_| (random.direction(), random.direction())).collect();
+    let worst = |levels: usize| {
+        let mesh = meshes::sphere(0.03, levels);
+        let ours = surface(primitive, &mesh, 0.01);
+        let touch = |u: &Vec3| ours.project(&(u * 0.05), None).contact;
+        let off = |(u, v): &(Vec3, Vec3)| {
+            let (a, b) = (touch(u), touch(v));
+            (length(&ours, &a, &b) / (0.03 * a.p_OC.angle(&b.p_OC)) - 1.0).abs()
+        };
+        ends.iter().map(off).fold(0.0, f64::max)
+    };
+    let errors = [worst(2), worst(3), worst(4)];
+    // The facets' depth falls to a quarter with each level.
+    assert!(errors[2] < 2e-3 && errors[1] < errors[0] / 2.5 && errors[2] < errors[1] / 2.5, "{errors:?}");
+}
+
+/// The least value over all pairs of angles, by grids that close in on the best places; knows nothing of derivatives.
+fn least_of_pairs(f: impl Fn(f64, f64) -> f64) -> f64 {
+    const GRID: usize = 120;
+    let mut tried = Vec::new();
+    for i in 0..GRID {
+        for j in 0..GRID {
+            let at = [i, j].map(|k| 2.0 * PI * k as f64 / GRID as f64);
+            tried.push((f(at[0], at[1]), at));
+        }
+    }
+    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let close_in = |start: &(f64, [f64; 2])| {
+        let (mut best, mut step) = (*start, 2.0 * PI / GRID as f64);
+        while step > 1e-10 {
+            let moves = (0..9).map(|k| [f64::from(k / 3 - 1), f64::from(k % 3 - 1)]);
+            let around = moves.map(|m| [best.1[0] + m[0] * step, best.1[1] + m[1] * step]);
+            let next = around.map(|at| (f(at[0], at[1]), at)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+            if next.0 < best.0 { best = next } else { step /= 2.0 }
+        }
+        best.0
+    };
+    tried.iter().take(40).map(close_in).fold(f64::INFINITY, f64::min)
+}
+
+/// A random point of a tube's side or of one of its caps, now and then on a rim, and its cap's sign (0 on the side).
+fn on_tube(radius: f64, half_height: f64, round: bool, random: &mut Random) -> (Vec3, f64) {
+    let angle = random.range(-PI, PI);
+    let out = |rho: f64, z: f64| Vec3::new(rho * angle.cos(), rho * angle.sin(), z);
+    let sign = [1.0, -1.0][random.index(2)];
+    match random.index(7) {
+        0..=2 => (out(radius, half_height * random.range(-1.0, 1.0)), 0.0),
+        3 => (out(radius, half_height * sign), 0.0),
+        _ if round => {
+            let up = random.unit();
+            (out(radius * (1.0 - up * up).sqrt(), sign * (half_height + radius * up)), sign)
+        }
+        _ => (out(radius * random.unit().sqrt(), half_height * sign), sign),
+    }
+}
+
+/// The angle between two vectors (rad), exact also where it is small.
+fn arc(a: &Vec3, b: &Vec3) -> f64 {
+    a.cross(b).norm().atan2(a.dot(b))
+}
+
+#[test]
+fn tubes_are_crossed_where_their_rims_are_crossed_best() {
+    let (R, H) = (0.02, 0.03);
+    for (round, H) in [(false, H), (true, H), (false, 0.004), (true, 0.002)] {
+        let primitive = match round {
+            false => Primitive::Cylinder { radius: R, half_height: H },
+            true => Primitive::Capsule { radius: R, half_height: H },
+        };
+        let form = ClosedForm::new(&primitive);
+        let mut random = Random::from_key(5, 0, 0, 0);
+        let angle = |p: &Vec3| p.y.atan2(p.x);
+        let turned = |x: f64| (x + PI).rem_euclid(2.0 * PI) - PI;
+        let helix = |a: f64, z: f64, b: f64, y: f64| (R * turned(b - a)).hypot(y - z);
+        let over = |p: &Vec3, sign: f64, b: f64| {
+            let rim = Vec3::new(R * b.cos(), R * b.sin(), sign * H);
+            let middle = Vec3::z() * (sign * H);
+            if round { R * arc(&(p - middle), &(rim - middle)) } else { (p - rim).norm() }
+        };
+        for _ in 0..60 {
+            let ((p, s), (q, t)) = (on_tube(R, H, round, &mut random), on_tube(R, H, round, &mut random));
+            let (a, b) = (angle(&p), angle(&q));
+            let best = match (s == 0.0, t == 0.0) {
+                (true, true) => {
+                    let rim = |x: f64, sign: f64| Vec3::new(R * x.cos(), R * x.sin(), sign * H);
+                    let detour = |sign: f64| {
+                        least_of_pairs(|x, y| {
+                            helix(a, p.z, x, sign * H)
+                                + over(&rim(x, sign), sign, y)
+                                + helix(y, sign * H, b, q.z)
+                        })
+                    };
+                    helix(a, p.z, b, q.z).min(detour(1.0)).min(detour(-1.0))
+                }
+                (true, false) => least_of_pairs(|x, _| helix(a, p.z, x, t * H) + over(&q, t, x)),
+                (false, true) => least_of_pairs(|x, _| helix(b, q.z, x, s * H) + over(&p, s, x)),
+                _ if s == t && round => R * arc(&(p - Vec3::z() * s * H), &(q - Vec3::z() * s * H)),
+                _ if s == t => (p - q).norm(),
+                _ => least_of_pairs(|x, y| over(&p, s, x) + helix(x, s * H, y, t * H) + over(&q, t, y)),
+            };
+            let found = curve(&form, &p, &q);
+            assert!(
+                (found.length - best).abs() < 1e-8 * R,
+                "{} instead of {best}: {p:?} {q:?}",
+                found.length
+            );
+            // The points add up to the length and lie on the tube.
+            let sum: f64 = found.points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+            assert!(sum <= found.length * (1.0 + 1e-12) && sum > found.length * (1.0 - 2e-4));
+            assert!(found.points.iter().all(|x| (form.outward(x) - x).norm() < 1e-15));
+        }
+    }
+}
+
+/// Simpson's rule.
+fn integral(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let count = 2000;
+    let h = (to - from) / f64::from(count);
+    let weight = |i: i32| if i == 0 || i == count { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
+    (0..=count).map(|i| weight(i) * f(from + h * f64::from(i))).sum::<f64>() * h / 3.0
+}
+
+/// A geodesic of a spheroid from its equator by quadrature (Karney, "Algorithms for geodesics", J. Geodesy 87, 2013, equations 7 and 8):
+/// the place after the arc σ on the auxiliary sphere, the length, and the longitude (rad).
+fn on_spheroid(a: f64, c: f64, azimuth: f64, sigma: f64) -> (Vec3, f64, f64) {
+    let (sin, cos) = azimuth.sin_cos();
+    let f = (a - c) / a;
+    let k2 = (a * a / (c * c) - 1.0) * cos * cos;
+    let root = |x: f64| (1.0 + k2 * x.sin().powi(2)).sqrt();
+    let s = c * integral(0.0, sigma, root);
+    let omega = (sin * sigma.sin()).atan2(sigma.cos());
+    let lambda = omega - f * sin * integral(0.0, sigma, |x| (2.0 - f) / (1.0 + (1.0 - f) * root(x)));
+    let sin_beta = cos * sigma.sin();
+    let cos_beta = (1.0 - sin_beta * sin_beta).sqrt();
+    (Vec3::new(a * cos_beta * lambda.cos(), a * cos_beta * lambda.sin(), c * sin_beta), s, lambda)
+}
+
+#[test]
+fn geodesics_of_spheroids_are_those_of_the_quadrature() {
+    let mut random = Random::from_key(6, 0, 0, 0);
+    for (a, c) in [(0.03, 0.03), (0.03, 0.02), (0.03, 0.008), (0.02, 0.03), (0.01, 0.04)] {
+        let form = ClosedForm::new(&Primitive::Ellipsoid { semi_axes: Vec3::new(a, a, c) });
+        for _ in 0..40 {
+            // Shortest as long as the geodesic reaches neither the equator again nor the opposite meridian.
+            let (azimuth, sigma) = (random.range(-0.9, 0.9), random.range(0.01, 2.6));
+            let (to, length, longitude) = on_spheroid(a, c, azimuth, sigma);
+            if longitude.abs() > 3.1 {
+                continue;
+            }
+            let found = curve(&form, &(Vec3::x() * a), &to);
+            let error = (found.length / length - 1.0).abs();
+            assert!(error < 2e-7, "{} instead of {length} ({a}, {c}, {azimuth}, {sigma})", found.length);
+            // Its middle, too.
+            let middle = found.points.len() / 2;
+            let share = middle as f64 / (found.points.len() - 1) as f64;
+            let (mut low, mut high) = (0.0, sigma);
+            for _ in 0..60 {
+                let mean = 0.5 * (low + high);
+                if on_spheroid(a, c, azimuth, mean).1 < share * length { low = mean } else { high = mean }
+            }
+            let truth = on_spheroid(a, c, azimuth, low).0;
+            assert!((found.points[middle] - truth).norm() < 1e-7 * a, "{:?} {truth:?}", found.points[middle]);
+        }
+    }
+}
+
+/// The spread of a quantity along a curve, relative to the largest that it could be.
+fn spread(points: &[Vec3], quantity: impl Fn(&Vec3, &Vec3) -> f64) -> f64 {
+    let values: Vec<f64> = points
+        .windows(5)
+        .map(|w| quantity(&w[2], &((w[0] - w[4] + (w[3] - w[1]) * 8.0).normalize())))
+        .collect();
+    let (low, high) = values.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &v| (l.min(v), h.max(v)));
+    high - low
+}
+
+#[test]
+fn geodesics_of_ellipsoids_keep_joachimsthals_invariant_and_are_shortest() {
+    let axes = Vec3::new(0.04, 0.025, 0.015);
+    let form = ClosedForm::new(&Primitive::Ellipsoid { semi_axes: axes });
+    let (coarse, fine) = (meshes::ellipsoid(axes, 3), meshes::ellipsoid(axes, 4));
+    let exact = GeodesicSettings { tolerance: 1e-6, ..GeodesicSettings::default() };
+    let [coarse, fine] = [coarse, fine].map(|mesh| Geodesic::new(&exact, &mesh, 0.0).unwrap());
+    let mut random = Random::from_key(7, 0, 0, 0);
+    for i in 0..60 {
+        // Also nearly opposite points, with several geodesics of nearly the same length.
+        let u = random.direction();
+        let v = if i % 2 == 0 { random.direction() } else { (random.direction() * 0.3 - u).normalize() };
+        let (a, b) = (u.component_mul(&axes), v.component_mul(&axes));
+        let found = curve(&form, &a, &b);
+        assert!(found.points.iter().all(|p| (p.component_div(&axes).norm() - 1.0).abs() < 1e-12));
+        if found.points.len() > 8 {
+            let invariant = |p: &Vec3, t: &Vec3| {
+                let (g, s) = (p.component_div(&axes).component_div(&axes), t.component_div(&axes));
+                g.norm_squared() * s.norm_squared() * axes.min().powi(4)
+            };
+            let off = spread(&found.points, invariant);
+            // Differences over a millimetre are not exact where the ellipsoid is sharpest.
+            assert!(off < 1e-4, "Joachimsthal's invariant changes by {off}");
+        }
+        let over = |surface: &Geodesic| {
+            let touch = |p: &Vec3| surface.project(p, None).contact;
+            length(surface, &touch(&a), &touch(&b))
+        };
+        // The facets' depth falls to a quarter with each level.
+        let [rough, better] = [over(&coarse), over(&fine)];
+        let best = better + (better - rough) / 3.0;
+        assert!((found.length / best - 1.0).abs() < 2e-3, "{} instead of {best}: {a:?} {b:?}", found.length);
+    }
+}
+
+#[test]
+fn geodesics_of_rings_keep_clairauts_relation_and_are_shortest() {
+    let (ring, tube) = (0.03, 0.012);
+    let form = ClosedForm::new(&Primitive::Torus { ring_radius: ring, tube_radius: tube });
+    let at = |u: f64, v: f64| {
+        let out = ring + tube * v.cos();
+        Vec3::new(out * u.cos(), out * u.sin(), tube * v.sin())
+    };
+    // Along the inner side, along the outer side, around the tube.
+    for (from, to, length) in [
+        (at(0.0, PI), at(2.5, PI), 2.5 * (ring - tube)),
+        (at(0.0, 0.0), at(0.9, 0.0), 0.9 * (ring + tube)),
+        (at(1.0, 2.0), at(1.0, -1.0), 3.0 * tube),
+    ] {
+        let found = curve(&form, &from, &to).length;
+        assert!((found - length).abs() < 1e-8 * length, "{found} instead of {length}");
+    }
+    let exact = GeodesicSettings { tolerance: 1e-6, ..GeodesicSettings::default() };
+    let over = |around: u32| {
+        let mesh = meshes::torus(ring, tube, 2 * around, around);
+        Geodesic::new(&exact, &mesh, 0.0).unwrap()
+    };
+    let (coarse, fine) = (over(24), over(48));
+    let mut random = Random::from_key(8, 0, 0, 0);
+    for _ in 0..60 {
+        let [a, b] = [(); 2].map(|()| at(random.range(-PI, PI), random.range(-PI, PI)));
+        let found = curve(&form, &a, &b);
+        if found.points.len() > 8 {
+            let off = spread(&found.points, |p, t| (p.x * t.y - p.y * t.x).abs() / ring);
+            assert!(off < 1e-5, "Clairaut's constant changes by {off}");
+        }
+        let over = |surface: &Geodesic| {
+            let touch = |p: &Vec3| surface.project(p, None).contact;
+            length(surface, &touch(&a), &touch(&b))
+        };
+        let [rough, better] = [over(&coarse), over(&fine)];
+        let best = better + (better - rough) / 3.0;
+        assert!((found.length / best - 1.0).abs() < 3e-3, "{} instead of {best}: {a:?} {b:?}", found.length);
+    }
+}
+
+#[test]
+fn curves_are_the_same_both_ways_and_walks_retrace_them() {
+    let mut random = Random::from_key(9, 0, 0, 0);
+    for primitive in [
+        Primitive::Sphere { radius: 0.03 },
+        Primitive::Ellipsoid { semi_axes: Vec3::new(0.04, 0.03, 0.025) },
+        Primitive::Cuboid { half_size: Vec3::new(0.02, 0.03, 0.015) },
+        Primitive::Cylinder { radius: 0.02, half_height: 0.03 },
+        Primitive::Capsule { radius: 0.02, half_height: 0.02 },
+        Primitive::Torus { ring_radius: 0.03, tube_radius: 0.012 },
+    ] {
+        let form = ClosedForm::new(&primitive);
+        for _ in 0..30 {
+            let [a, b] = [(); 2].map(|()| form.outward(&(random.direction() * 0.035)));
+            let (there, back) = (curve(&form, &a, &b), curve(&form, &b, &a));
+            assert_eq!(there.length, back.length);
+            assert!(there.points.iter().eq(back.points.iter().rev()), "{primitive:?}");
+            if there.points.len() < 3 {
+                continue;
+            }
+            // Straight ahead from the middle of the path's first piece.
+            let start = form.outward(&there.points[0].lerp(&there.points[1], 1e-3));
+            let begun = curve(&form, &start, &b);
+            let mut walked = Curve::default();
+            let ahead = begun.points[1] - begun.points[0];
+            let first_normal = form.normal(&start);
+            let flat = ahead - first_normal * first_normal.dot(&ahead);
+            // A chord leads aside by the square of its length.
+            form.walk(&start, &flat, begun.length, 1e-3, &mut walked);
+            let end = walked.points[walked.points.len() - 1];
+            assert!((end - b).norm() < 3e-2 * begun.length, "{primitive:?}: {end:?} instead of {b:?}");
+            assert!((walked.length - begun.length).abs() < 1e-12);
+        }
+    }
+}
