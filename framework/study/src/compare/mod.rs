@@ -1,8 +1,45 @@
 //! Comparisons of plugin combinations: every scenario, planned by every variant, with every seed; every plan verified.
+//!
+//! [`prepare`] makes a [`Study`] of what is asked for, [`Folder::open`] begins or resumes it in a folder, [`execute`] makes its runs and
+//! keeps each as soon as it has ended, [`Folder::finish`] writes the results. Parts of a study, made elsewhere, are joined by [`merge`].
 
+mod analysis;
+mod csv;
+mod derived;
+mod draft;
+mod error;
+mod execute;
+mod file;
+mod fingerprint;
+#[cfg(test)]
+mod fixture;
+mod folder;
+mod journal;
+mod merge;
+pub mod ompl;
+mod one_run;
+mod paper_table;
 mod record;
+pub mod report;
+mod results;
+mod runs_csv;
 pub mod statistics;
 mod study;
+pub mod summary;
+mod timed;
 
+pub use analysis::*;
+pub use draft::*;
+pub use error::*;
+pub use execute::*;
+pub use file::*;
+pub use fingerprint::*;
+pub use folder::*;
+pub use journal::JOURNAL;
+pub use merge::*;
+pub use one_run::*;
+pub use paper_table::*;
 pub use record::*;
+pub use results::*;
 pub use study::*;
+pub use timed::{CLEARANCE, FRAMEWORK, PERIOD};

@@ -14,7 +14,7 @@ pub const RUNS_FILE: &str = "runs.csv";
 /// `records` are of the study, in the order of their keys. Each file is written under another name first.
 pub fn write_results(folder: &Path, study: &Study, records: &[RunRecord]) -> Result<(), StudyError> {
     write_runs(folder, study, records)?;
-    for (name, text) in derived_files(study, records) {
+    for (name, text) in derived_files(folder, study, records) {
         let path = folder.join(name);
         let inner = path.parent().unwrap_or(folder);
         fs::create_dir_all(inner).map_err(|source| StudyError::Io { path: inner.to_owned(), source })?;

@@ -1,7 +1,7 @@
 //! What may be said of a scenario's runs: no more than the tests show.
 
-use super::number::{milliseconds, p_text, percent, ratio_text};
-use crate::compare::statistics::ALPHA;
+use super::number::{milliseconds, p_text, ratio_text};
+use crate::compare::statistics::{ALPHA, Estimate};
 use crate::compare::{Cell, Compared, Figure};
 use std::iter;
 
@@ -28,7 +28,8 @@ pub fn finding(row: &[Cell<'_>], name: &dyn Fn(&str) -> String) -> String {
 fn alone(cell: &Cell<'_>, name: &dyn Fn(&str) -> String) -> String {
     let solved =
         format!("{} solved {} of {}", name(&cell.variant.name), cell.successes().count(), cell.runs.len());
-    let share = cell.success().map(|share| format!(" ({} %)", percent(share))).unwrap_or_default();
+    let ends = |share: Estimate| format!(" ({:.0} to {:.0} %)", 1e2 * share.low, 1e2 * share.high);
+    let share = cell.success().map(ends).unwrap_or_default();
     let time = cell.median(Figure::Planning).map(milliseconds);
     let time = time.map(|time| format!(", at the median in {time} ms")).unwrap_or_default();
     format!("{solved}{share}{time}.")
