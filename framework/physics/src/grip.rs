@@ -80,16 +80,32 @@ pub(crate) struct Grip {
     pub margin: f64,
 }
 
-/// Weight of the squared forces (1/N) against the margin: small enough to leave the margin nearly best, large enough to make
-/// the forces unique and continuous along a motion.
-const REGULARISATION: f64 = 1e-3;
-/// Most normal force (N) where only the joints' efforts bound it.
-const UNBOUNDED: f64 = 1e3;
+/// How hard the fingers may press.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Press {
+    /// Most normal force of a contact (N).
+    most: f64,
+    /// Weight ε of the squared forces (1/N) against the margin.
+    price: f64,
+}
+
+impl Press {
+    /// Up to this normal force (N). The price leaves the margin nearly best, and makes the forces unique and continuous along a motion.
+    pub fn up_to(most: f64) -> Self {
+        Self { most, price: 1e-3 }
+    }
+
+    /// As hard as the joints can, however little that gains. A program whose forces nothing bounds would have no best answer: hence the kilonewton.
+    pub fn whole() -> Self {
+        Self { most: 1e3, price: 1e-6 }
+    }
+}
+
 /// Length (m) by which rows of torque are divided, so that they compare with forces.
 const LENGTH: f64 = 0.03;
 
-/// Maximises t - ε/2 |f|² over the forces f with μ f_n - |(f_t, m μ/γ)| ≥ t at each contact, Σ f = -`load_f`, Σ (r × f + m n) = 0, f_n ≤ `most` (if
-/// given) and joint efforts |Jᵀ f| within theirs; `None` where no forces do. A margin of 0 or less
+/// Maximises t - ε/2 |f|² over the forces f with μ f_n - |(f_t, m μ/γ)| ≥ t at each contact, Σ f = -`load_f`, Σ (r × f + m n) = 0, f_n ≤ most
+/// and joint efforts |Jᵀ f| within theirs; `None` where no forces do. A margin of 0 or less
 /// says that none do so inside the cones.
 ///
 /// In the manner of Boyd and Wegbreit, "Fast computation of optimal contact forces", T-RO 2007; solved by Clarabel (Goulart and Chen,
@@ -98,15 +114,15 @@ pub(crate) fn best_grip(
     contacts: &[GripContact],
     friction: &Friction,
     load: &Vec3,
-    most: Option<f64>,
+    press: Press,
 ) -> Option<Grip> {
     let bases: Vec<Vec<Direction>> = contacts.iter().map(|contact| directions(contact, friction)).collect();
     let width = bases.first()?.len();
     let mut program = Program::new(width, contacts.len());
     program.balance(&bases, load);
-    program.bounds(contacts, &bases, most);
+    program.bounds(contacts, &bases, press.most);
     program.cones(friction.mu);
-    let x = program.solve()?;
+    let x = program.solve(press.price)?;
     let exerted =
         bases.iter().zip(x.chunks(width)).map(|(basis, x)| combined(basis.iter().zip(x.iter().copied())));
     let forces: Vec<ContactForce> = exerted.collect();
@@ -187,12 +203,11 @@ impl Program {
     }
 
     /// f_n ≤ most; ±Jᵀf ≤ effort.
-    fn bounds(&mut self, contacts: &[GripContact], bases: &[Vec<Direction>], most: Option<f64>) {
+    fn bounds(&mut self, contacts: &[GripContact], bases: &[Vec<Direction>], most: f64) {
         let first = self.b.len();
         for (i, (contact, basis)) in contacts.iter().zip(bases).enumerate() {
-            // A program whose forces nothing bounds would have no best answer.
             self.set(self.b.len(), self.width * i, 1.0);
-            self.b.push(most.unwrap_or(UNBOUNDED));
+            self.b.push(most);
             let efforts: Vec<FingerJoints> =
                 basis.iter().map(|direction| contact.efforts_of(&direction.unit)).collect();
             for (joint, &limit) in contact.efforts.iter().enumerate() {
@@ -223,10 +238,10 @@ impl Program {
         }
     }
 
-    fn solve(self) -> Option<Vec<f64>> {
+    fn solve(self, price: f64) -> Option<Vec<f64>> {
         let n = self.width * self.contacts + 1;
         let diagonal: Vec<usize> = (0..n - 1).collect();
-        let P = CscMatrix::new_from_triplets(n, n, diagonal.clone(), diagonal, vec![REGULARISATION; n - 1]);
+        let P = CscMatrix::new_from_triplets(n, n, diagonal.clone(), diagonal, vec![price; n - 1]);
         let A = CscMatrix::new_from_triplets(self.b.len(), n, self.rows, self.columns, self.values);
         let mut q = vec![0.0; n];
         q[n - 1] = -1.0;
@@ -273,7 +288,7 @@ mod tests {
     #[test]
     fn a_ring_of_contacts_shares_the_weight_and_takes_the_best_margin() {
         let weight = Vec3::new(0.0, 0.0, -1.0);
-        let grip = best_grip(&ring(), &point(), &weight, Some(3.0)).unwrap();
+        let grip = best_grip(&ring(), &point(), &weight, Press::up_to(3.0)).unwrap();
         let sum: Vec3 = grip.forces.iter().map(|exerted| exerted.force).sum();
         assert!((sum + weight).norm() < 1e-6);
         // By symmetry each carries a quarter; the normal force is at its bound: 0.5 · 3 - 0.25.
@@ -314,12 +329,14 @@ mod tests {
         // The centre of mass is 2 mm beside the line.
         contacts.iter_mut().for_each(|contact| contact.r += Vec3::new(0.0, 2e-3, 0.0));
         let weight = Vec3::new(0.0, 0.0, -1.0);
-        let grip = best_grip(&contacts, &soft(), &weight, Some(6.0)).unwrap();
+        let grip = best_grip(&contacts, &soft(), &weight, Press::up_to(6.0)).unwrap();
         let (sum, torque) = resultant(&contacts, &grip.forces);
         assert!((sum + weight).norm() < 1e-6 && torque.norm() < 1e-7, "{sum} {torque}");
         // Each carries half of the torque, 1e-3 N·m, and half of the weight: 0.5 · 6 - √(0.5² + (1e-3 · 0.5/0.004)²).
         assert!((grip.margin - (3.0 - 0.5_f64.hypot(0.125))).abs() < 1e-3, "{}", grip.margin);
-        assert!(best_grip(&contacts, &point(), &weight, Some(6.0)).is_none_or(|grip| grip.margin <= 1e-6));
+        assert!(
+            best_grip(&contacts, &point(), &weight, Press::up_to(6.0)).is_none_or(|grip| grip.margin <= 1e-6)
+        );
     }
 
     #[test]
@@ -330,16 +347,16 @@ mod tests {
             contact.spins = vec![0.0];
             contact.efforts = vec![0.2];
         }
-        let grip = best_grip(&contacts, &point(), &Vec3::new(0.0, 0.0, -1.0), Some(3.0)).unwrap();
+        let grip = best_grip(&contacts, &point(), &Vec3::new(0.0, 0.0, -1.0), Press::up_to(3.0)).unwrap();
         assert!((grip.margin - 0.75).abs() < 1e-3, "{}", grip.margin);
     }
 
     #[test]
     fn too_heavy_or_not_closed_has_no_grip() {
-        let heavy = best_grip(&ring(), &point(), &Vec3::new(0.0, 0.0, -7.0), Some(3.0)).unwrap();
+        let heavy = best_grip(&ring(), &point(), &Vec3::new(0.0, 0.0, -7.0), Press::up_to(3.0)).unwrap();
         // Each carries 7/4 N, and 0.5 · 3 N is what friction gives.
         assert!((heavy.margin + 0.25).abs() < 1e-3, "{}", heavy.margin);
-        let two = best_grip(&ring()[..2], &point(), &Vec3::new(0.0, 0.0, -0.1), Some(3.0));
+        let two = best_grip(&ring()[..2], &point(), &Vec3::new(0.0, 0.0, -0.1), Press::up_to(3.0));
         assert!(two.is_none_or(|grip| grip.margin <= 1e-6));
     }
 }

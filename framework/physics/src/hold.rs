@@ -1,11 +1,14 @@
 //! The efforts with which the fingers hold the object along a motion.
 
 use crate::force::{ContactForce, Friction};
-use crate::grip::{Grip, GripContact, balanced, best_grip, margin};
+use crate::grip::{Grip, GripContact, Press, balanced, best_grip, margin};
 use crate::settings::SimulationSettings;
 use regrasp_api::{
     Configuration, FingerIndex, FingerJoints, FingerSet, Hand, ObjectModel, PerFinger, Rotation, Vec3,
 };
+
+/// A margin (of the weight) with which a grip is content; a smaller one is not worth sparing the joints.
+const CONTENT: f64 = 0.1;
 
 /// What part of a solved margin forces that are carried along must keep.
 const KEPT: f64 = 0.8;
@@ -17,8 +20,8 @@ pub struct Held {
     pub forces: PerFinger<Option<ContactForce>>,
     /// The joints' efforts that exert this (N·m; N where prismatic): Jᵀ f, 0 for fingers that do not hold. The links' weight comes on top.
     pub efforts: PerFinger<FingerJoints>,
-    /// The least distance of a force from its friction cone (N), see [`Friction::margin`]. Where it is not positive, no forces within the cones and the
-    /// joints' efforts hold the object, and these are the nearest.
+    /// The least distance of a force from its friction cone (N), see [`Friction::margin`], by the object's own friction. Where it is not positive, no forces
+    /// within the cones and the joints' efforts hold the object, and these are the nearest.
     pub margin: f64,
 }
 
@@ -31,7 +34,9 @@ pub(crate) struct Holder<'a> {
     object: &'a ObjectModel,
     /// The object's weight in H (N).
     weight: Vec3,
-    friction: Friction,
+    /// What the forces rely on where the joints can press enough, and what there is.
+    planned: Friction,
+    own: Friction,
     most: f64,
     share: f64,
     last: Option<Solved>,
@@ -40,62 +45,61 @@ pub(crate) struct Holder<'a> {
 struct Solved {
     contacts: Vec<GripContact>,
     grip: Grip,
-    /// The margin when it was solved (N).
+    /// The margin when it was solved (N); 0 for a poor grip, which is not carried along.
     margin: f64,
 }
 
 impl<'a> Holder<'a> {
-    /// For contacts that the fingers take to have this friction, and an object of its own mass, under gravity `g_H` (m/s²).
+    /// For forces that rely on the friction `planned` where they can, on `own` where they must, and an object of its own mass under gravity `g_H` (m/s²).
     pub fn new(
         (hand, object, g_H): (&'a dyn Hand, &'a ObjectModel, Vec3),
-        friction: Friction,
+        [planned, own]: [Friction; 2],
         settings: &SimulationSettings,
     ) -> Self {
         let weight = g_H * object.mass;
         let most = settings.grip.unwrap_or((3.0 * weight.norm()).max(2.0));
-        Self { hand, object, weight, friction, most, share: settings.effort_share, last: None }
+        Self { hand, object, weight, planned, own, most, share: settings.effort_share, last: None }
     }
 
     /// How the fingers of `holding` hold the object at `q`; `None` where no forces of any direction do.
     pub fn hold(&mut self, q: &Configuration, holding: FingerSet) -> Option<Held> {
         let contacts = self.contacts(q, holding);
         let carried = self.last.take().and_then(|last| self.carry(last, &contacts));
-        let (grip, solved) = match carried {
+        let solved = match carried {
             Some(carried) => carried,
-            None => {
-                let grip = self.solve(&contacts)?;
-                let margin = grip.margin;
-                (grip, margin)
-            }
+            None => self.solve(&contacts)?,
         };
+        let forces = &solved.grip.forces;
         let mut held = Held {
             forces: PerFinger::filled(q.joints.len(), None),
             efforts: PerFinger::from_fn(q.joints.len(), |f| FingerJoints::zeros(q.joints[f].len())),
-            margin: grip.margin,
+            margin: margin(&contacts, forces, &self.own),
         };
-        for (contact, exerted) in contacts.iter().zip(&grip.forces) {
+        for (contact, exerted) in contacts.iter().zip(forces) {
             held.forces[contact.finger] = Some(*exerted);
             held.efforts[contact.finger] = contact.efforts_of(exerted);
         }
-        self.last = Some(Solved { contacts, grip, margin: solved });
+        self.last = Some(solved);
         Some(held)
     }
 
-    /// The best grip within the bounds wished for; where none is inside the cones, the best that the joints' whole efforts allow.
-    fn solve(&self, contacts: &[GripContact]) -> Option<Grip> {
-        let wished = best_grip(contacts, &self.friction, &self.weight, Some(self.most));
-        if wished.as_ref().is_some_and(|grip| grip.margin > 0.0) {
-            return wished;
+    /// The best grip within the bounds wished for; where that is a poor one, the best that the joints' whole efforts and all friction allow.
+    fn solve(&self, contacts: &[GripContact]) -> Option<Solved> {
+        let solved = |grip: Grip, margin| Solved { contacts: contacts.to_vec(), grip, margin };
+        let wished = best_grip(contacts, &self.planned, &self.weight, Press::up_to(self.most));
+        if let Some(grip) = wished.as_ref().filter(|grip| grip.margin > CONTENT * self.weight.norm()) {
+            return Some(solved(grip.clone(), grip.margin));
         }
-        let mut contacts = contacts.to_vec();
-        contacts.iter_mut().flat_map(|contact| &mut contact.efforts).for_each(|effort| *effort /= self.share);
-        best_grip(&contacts, &self.friction, &self.weight, None)
+        let mut whole = contacts.to_vec();
+        whole.iter_mut().flat_map(|contact| &mut contact.efforts).for_each(|effort| *effort /= self.share);
+        let grip = best_grip(&whole, &self.own, &self.weight, Press::whole()).or(wished)?;
+        Some(solved(grip, 0.0))
     }
 
-    fn carry(&self, last: Solved, contacts: &[GripContact]) -> Option<(Grip, f64)> {
+    fn carry(&self, last: Solved, contacts: &[GripContact]) -> Option<Solved> {
         let fingers =
             |contacts: &[GripContact]| contacts.iter().map(|c| c.finger).collect::<Vec<FingerIndex>>();
-        if fingers(&last.contacts) != fingers(contacts) {
+        if last.margin <= 0.0 || fingers(&last.contacts) != fingers(contacts) {
             return None;
         }
         let turned =
@@ -104,13 +108,15 @@ impl<'a> Holder<'a> {
                 ContactForce { force: turn * exerted.force, spin: exerted.spin }
             });
         let turned: Vec<ContactForce> = turned.collect();
-        let forces = balanced(contacts, &turned, &self.friction, &self.weight)?;
-        let margin = margin(contacts, &forces, &self.friction);
-        if last.margin <= 0.0 {
-            return None;
-        }
+        let forces = balanced(contacts, &turned, &self.planned, &self.weight)?;
+        let now = margin(contacts, &forces, &self.planned);
         let bounded = contacts.iter().zip(&forces).all(|(contact, force)| contact.allows(force, self.most));
-        (bounded && margin >= KEPT * last.margin).then_some((Grip { forces, margin }, last.margin))
+        let good = bounded && now >= KEPT * last.margin;
+        good.then(|| Solved {
+            contacts: contacts.to_vec(),
+            grip: Grip { forces, margin: now },
+            margin: last.margin,
+        })
     }
 
     /// The contacts as the program of forces sees them, in H.

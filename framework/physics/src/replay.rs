@@ -179,8 +179,11 @@ impl Run<'_> {
     /// The stage's schedule, forces passing over first, up to where no forces hold the object; and the least margin of a grip (N).
     fn knots(&mut self, stage: &Stage<'_>, is_last: bool) -> (Vec<Knot>, f64) {
         let Scene { hand, object, g_H, .. } = self.scene;
-        let mut holder =
-            Holder::new((hand, object, g_H), Friction::point(self.mu), &self.settings.simulation);
+        let mut holder = Holder::new(
+            (hand, object, g_H),
+            [self.mu, object.friction].map(Friction::point),
+            &self.settings.simulation,
+        );
         let start = self.clock + self.settings.shift;
         let first = stage.times.first().copied().unwrap_or(0.0);
         let mut least = f64::INFINITY;

@@ -30,7 +30,8 @@ impl Stage<'_> {
 
 /// The forces that hold the object in every state of a motion, stage by stage: those farthest from slipping that the joints can exert.
 ///
-/// `friction` is what the forces rely on: a plan's claim, a little below the object's own. Of the settings only `grip` and `effort_share` matter.
+/// `friction` is what the forces rely on, a plan's claim, which is a little below the object's own; where it does not suffice, they rely on the object's
+/// and on the joints' whole efforts. Of the settings only `grip` and `effort_share` matter.
 /// `g_H` is the acceleration of gravity (m/s², in H). A state's entry is `None` where the grasp cannot exert every wrench
 /// even without regard to friction. From one stage to the next the
 /// forces jump, though the state is the same: other fingers hold; let them pass over while everything rests. Cost: 0.1 ms for each program
@@ -44,7 +45,10 @@ pub fn grasp_forces(
     settings.validate()?;
     friction.validate()?;
     let one = |stage: &Stage<'_>| {
-        let mut holder = Holder::new((hand, object, g_H), stage.friction(friction), settings);
+        // The object's own friction, but never less than was planned with.
+        let own = Friction { mu: friction.mu.max(object.friction), gamma: friction.gamma };
+        let frictions = [friction, own].map(|friction| stage.friction(friction));
+        let mut holder = Holder::new((hand, object, g_H), frictions, settings);
         stage.states.iter().map(|q| holder.hold(q, stage.holding(q))).collect()
     };
     Ok(stages.iter().map(one).collect())
