@@ -114,12 +114,14 @@ impl<'a> Cell<'a> {
         median_interval(self.successes().filter_map(|run| figure.of(run)))
     }
 
-    /// The time after which half of *all* runs had succeeded (s); infinite where fewer than half ever do. What variants are ranked by.
-    pub fn half_solved_s(&self) -> f64 {
-        let mut times: Vec<f64> = self.successes().map(|run| run.times.planning_s).collect();
+    /// The median planning time over *all* runs (s), one that did not succeed counting as endless; infinite where half of them failed. What
+    /// variants are ranked by: who fails is not fast.
+    pub fn median_of_all_s(&self) -> f64 {
+        let time = |run: &&RunRecord| if run.is_success() { run.times.planning_s } else { f64::INFINITY };
+        let mut times: Vec<f64> = self.runs.iter().map(time).collect();
         times.sort_by(f64::total_cmp);
-        let half = self.runs.len().div_ceil(2).max(1);
-        times.get(half - 1).copied().unwrap_or(f64::INFINITY)
+        let Some(last) = times.len().checked_sub(1) else { return f64::INFINITY };
+        0.5 * (times[last / 2] + times[last.div_ceil(2)])
     }
 
     /// Compares with another variant's runs of the same scenario, seed by seed; seeds that only one of them has are left out.

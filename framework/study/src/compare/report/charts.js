@@ -32,53 +32,65 @@ function lineKey(names, cells) {
   return element("div", { class: "key" }, ...entries);
 }
 
-/** Box plots of planning time on a logarithmic scale. */
+/** Box plots of planning time on a logarithmic scale; where there is little room, names stand above their boxes. */
 function boxPlots(names, cells, width) {
   const boxes = cells.filter((cell) => cell.box_plot);
   if (boxes.length === 0) return nothing("No run was solved.");
   const longest = Math.max(...boxes.map((cell) => names[cell.variant].length));
-  const left = Math.min(0.36 * width, 12 + 6.6 * longest);
-  const [right, top, step] = [width - 14, 6, 26];
+  const isNarrow = width < 480 || 6.6 * longest > 0.42 * width;
+  const left = isNarrow ? 12 : 12 + 6.6 * longest;
+  const [right, top, step] = [width - 18, isNarrow ? 0 : 4, isNarrow ? 42 : 28];
   const bottom = top + step * boxes.length;
   const values = boxes.flatMap(({ box_plot: box }) => [...box.whiskers, ...box.outliers]);
   const x = logScale(values, left, right);
-  const rows = boxes.map((cell, row) => boxPlot(cell, names[cell.variant], x, top + step * (row + 0.5), left));
+  const rows = boxes.map((cell, row) => {
+    const y = top + step * (row + 0.5) + (isNarrow ? 8 : 0);
+    const place = isNarrow ? { x: 0, y: y - 14 } : { x: left - 10, y: y + 4, "text-anchor": "end" };
+    const label = drawn("text", place, fitting(names[cell.variant], isNarrow ? width : left));
+    return drawn("g", { class: "box" }, label, ...boxPlot(cell, names[cell.variant], x.place, y));
+  });
   return picture(width, bottom + 26, "planning times", ...timeAxis(x, top, bottom), ...rows);
 }
 
-function boxPlot(cell, name, x, y, left) {
+function boxPlot(cell, name, place, y) {
   const { box_plot: box } = cell;
   const { color } = look(cell.variant);
-  const [first, median, third] = box.quartiles.map(x.place);
-  const [low, high] = box.whiskers.map(x.place);
+  const [first, median, third] = box.quartiles.map(place);
+  const [low, high] = box.whiskers.map(place);
   const line = (x1, x2, dy1, dy2, width) => drawn("line", { x1, x2, y1: y + dy1, y2: y + dy2, stroke: color, "stroke-width": width });
   const title = `${name}: median ${duration(box.quartiles[1])}, quartiles ${duration(box.quartiles[0])} and ${duration(box.quartiles[2])}, ${cell.successes} runs`;
-  return drawn("g", { class: "box" },
+  const body = { x: first, y: y - 8, width: Math.max(1, third - first), height: 16, rx: 2, fill: color, "fill-opacity": 0.22, stroke: color, "stroke-width": 1.3 };
+  return [
     drawn("title", {}, title),
-    drawn("text", { x: left - 8, y: y + 4, "text-anchor": "end" }, fitting(name, left - 8)),
     line(low, first, 0, 0, 1.3), line(third, high, 0, 0, 1.3), line(low, low, -4, 4, 1.3), line(high, high, -4, 4, 1.3),
-    drawn("rect", { x: first, y: y - 8, width: Math.max(1, third - first), height: 16, rx: 2, fill: color, "fill-opacity": 0.22, stroke: color, "stroke-width": 1.3 }),
-    line(median, median, -8, 8, 3),
-    ...box.outliers.map((time) => drawn("circle", { cx: x.place(time), cy: y, r: 2, fill: "none", stroke: color })));
+    drawn("rect", body), line(median, median, -8, 8, 3),
+    ...box.outliers.map((time) => drawn("circle", { cx: place(time), cy: y, r: 2, fill: "none", stroke: color })),
+  ];
 }
 
-/** Mean time of a run, stacked by who spent it. */
-function roleBars(names, cells, roles) {
+/** Shares of the planning time, stacked by who spent it, with the whole at the end. */
+function roleBars(names, cells, roles, width) {
   const sum = (cell) => Object.values(cell.roles_s).reduce((all, time) => all + time, 0);
-  const longest = Math.max(...cells.map(sum));
-  if (!(longest > 0)) return nothing("Times of roles were not measured.");
-  const rows = cells.flatMap((cell) => {
-    const whole = sum(cell);
-    const parts = roles.map((role, k) => [role, k, cell.roles_s[role] || 0]).filter(([, , time]) => time > 0);
-    const pieces = parts.map(([role, k, time]) => {
-      const title = `${role}: ${duration(time)}, ${percent(time / whole)}`;
-      return element("b", { title, style: `width:${(82 * time) / longest}%;background:var(--r${k})`, "data-role": role });
-    });
-    return [element("div", { class: "name" }, names[cell.variant]), element("div", { class: "bar" }, ...pieces, element("em", {}, duration(whole)))];
+  const measured = cells.filter((cell) => sum(cell) > 0);
+  if (measured.length === 0) return nothing("Times of roles were not measured.");
+  const rows = measured.flatMap((cell) => {
+    const bar = element("div", { class: "bar" }, ...rolePieces(cell, roles, sum(cell), 0.55 * width));
+    return [element("div", { class: "name" }, names[cell.variant]), bar, element("em", {}, duration(sum(cell)))];
   });
-  const used = roles.map((role, k) => [role, k]).filter(([role]) => cells.some((cell) => cell.roles_s[role] > 0));
+  const used = roles.map((role, k) => [role, k]).filter(([role]) => measured.some((cell) => cell.roles_s[role] > 0));
   const key = used.map(([role, k]) => element("span", {}, element("i", { style: `background:var(--r${k})` }), role));
   return element("div", {}, element("div", { class: "bars" }, ...rows), element("div", { class: "key" }, ...key));
+}
+
+function rolePieces(cell, roles, whole, width) {
+  const parts = roles.map((role, k) => [role, k, (cell.roles_s[role] || 0) / whole]).filter(([, , share]) => share > 0);
+  return parts.map(([role, k, share]) => {
+    const title = `${role}: ${duration(share * whole)}, ${percent(share)}`;
+    // Grown by its share from nothing, so that gaps do not make the bar longer than others.
+    const style = `flex:${share.toFixed(5)} 1 0;background:var(--r${k})`;
+    const isDark = [1, 4, 5, 8].includes(k);
+    return element("b", { title, style, class: isDark ? "dark" : null, "data-role": role }, share * width > 32 ? percent(share) : "");
+  });
 }
 
 /** A table of rejections: rows are variants, columns causes, darker means more. */

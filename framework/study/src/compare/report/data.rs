@@ -58,8 +58,8 @@ struct CellData {
     /// How many runs ended otherwise, by status.
     failures: BTreeMap<&'static str, usize>,
     planning_s: Option<Estimate>,
-    /// Absent where fewer than half of the runs were solved.
-    half_solved_s: Option<f64>,
+    /// See [`Cell::median_of_all_s`]; absent where it is infinite.
+    median_of_all_s: Option<f64>,
     ecdf: Vec<(f64, f64)>,
     box_plot: Option<BoxPlot>,
     generated: Option<f64>,
@@ -154,7 +154,7 @@ fn cell_data(cell: &Cell<'_>) -> CellData {
         success: cell.success(),
         failures,
         planning_s: cell.median(Figure::Planning),
-        half_solved_s: Some(cell.half_solved_s()).filter(|time| time.is_finite()),
+        median_of_all_s: Some(cell.median_of_all_s()).filter(|time| time.is_finite()),
         ecdf: ecdf(times(), cell.runs.len()),
         box_plot: log_box_plot(times()),
         generated: median(Figure::GeneratedNodes),

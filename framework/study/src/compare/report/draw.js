@@ -37,6 +37,11 @@ function duration(s) {
   return s < 1 ? `${digits(1e3 * s)} ms` : `${digits(s)} s`;
 }
 
+/** Seconds on an axis: no digit that says nothing. */
+function tickLabel(s) {
+  return duration(s).replace(/\.?0+ /, (zeros) => (zeros.startsWith(".") ? " " : zeros));
+}
+
 function percent(share) {
   return `${(100 * share).toFixed(0)} %`;
 }
@@ -69,7 +74,7 @@ function logScale(values, low, high) {
 function timeAxis(scale, top, bottom) {
   return scale.ticks.flatMap((tick) => {
     const x = scale.place(tick);
-    const label = drawn("text", { class: "tick", x, y: bottom + 16, "text-anchor": "middle" }, duration(tick));
+    const label = drawn("text", { class: "tick", x, y: bottom + 16, "text-anchor": "middle" }, tickLabel(tick));
     return [drawn("line", { class: "rule", x1: x, x2: x, y1: top, y2: bottom }), label];
   });
 }

@@ -75,19 +75,19 @@ function winnerCell(scenario, variant) {
   const cell = scenario.cells.find((other) => other.variant === variant);
   if (!cell) return element("td", { class: "none", title: "left out" }, "–");
   const solved = element("small", {}, `${cell.successes}/${cell.runs}`);
-  if (cell.half_solved_s === null) return element("td", { class: "none", title: "fewer than half of the runs were solved" }, "> half fail", solved);
-  const fastest = Math.min(...scenario.cells.map((other) => other.half_solved_s ?? Infinity));
+  if (cell.median_of_all_s === null) return element("td", { class: "none", title: "half of the runs or more failed" }, "–", solved);
+  const fastest = Math.min(...scenario.cells.map((other) => other.median_of_all_s ?? Infinity));
   const place = scenario.best.indexOf(variant);
-  const shade = 0.55 * Math.max(0, 1 - Math.log2(cell.half_solved_s / fastest) / 2.5);
-  const title = ["the fastest", "not shown to differ from the fastest"][Math.min(place, 1)] ?? `${digits(cell.half_solved_s / fastest)} times the fastest`;
-  return element("td", { class: ["best", "tie"][Math.min(place, 1)] ?? null, title, style: `background:rgba(var(--heat), ${shade.toFixed(3)})` }, duration(cell.half_solved_s), solved);
+  const shade = 0.55 * Math.max(0, 1 - Math.log2(cell.median_of_all_s / fastest) / 2.5);
+  const title = ["the fastest", "not shown to differ from the fastest"][Math.min(place, 1)] ?? `${digits(cell.median_of_all_s / fastest)} times the fastest`;
+  return element("td", { class: ["best", "tie"][Math.min(place, 1)] ?? null, title, style: `background:rgba(var(--heat), ${shade.toFixed(3)})` }, duration(cell.median_of_all_s), solved);
 }
 
 function drawOverview() {
   const scenarios = shownScenarios();
   document.getElementById("overview").replaceChildren(
     element("h2", {}, data.variants.length > 1 ? "Which combination wins where" : "All scenarios"),
-    element("p", { class: "quiet small" }, "Time until half of the runs were solved, and how many were. Thick frame: the fastest of the scenario; thin frame: not shown to differ from it (all pairs tested, Holm). The darker, the closer to the fastest."),
+    element("p", { class: "quiet small" }, "Median time over all runs, one that fails counting as endless, and how many were solved. Thick frame: the fastest of the scenario; thin frame: not shown to differ from it (all pairs tested, Holm). The stronger the colour, the closer to the fastest."),
     winners(scenarios),
     ...remark());
 }
@@ -109,7 +109,7 @@ function chart(title, content, kind = "chart") {
 function scenarioCard(scenario) {
   const cells = shownCells(scenario);
   const card = element("section", { class: "card" });
-  const facts = element("div", {}, element("h2", {}, scenario.name), element("p", {}, scenario.summary), element("p", {}, element("strong", {}, scenario.finding)),
+  const facts = element("div", {}, element("h2", {}, scenario.name), element("p", {}, scenario.summary), element("p", { class: "finding" }, scenario.finding),
     ...scenario.left_out.map((pair) => element("p", { class: "quiet small" }, `Not planned by “${pair.variant}”: ${pair.reason}`)),
     element("p", { class: "quiet small" }, scenario.source));
   const strip = element("div", { class: "strip" });
@@ -120,7 +120,7 @@ function scenarioCard(scenario) {
   card.append(element("div", { class: "charts" },
     chart("solved after a time (% of all runs)", solvedCurves(names, cells, width)),
     chart("planning time of solved runs", boxPlots(names, cells, width)),
-    chart("mean planning time by who spent it", roleBars(names, cells, data.roles)),
+    chart("planning time by who spent it (mean of the solved runs)", roleBars(names, cells, data.roles, width)),
     chart("rejections by cause, mean of a run", rejectionTable(names, cells, data.causes)),
     cells.length > 1 ? chart("time of the row divided by time of the column (×: a difference is shown; ≈: none could be)", pairMatrix(names, cells, scenario.pairs), "chart wide") : null,
     chart("figures", figureTable(names, scenario, cells), "chart wide")));

@@ -50,11 +50,12 @@ pub fn pairs(row: &[Cell<'_>]) -> Vec<Pair> {
     compared.iter().zip(time_p.into_iter().zip(solved_p)).map(pair).collect()
 }
 
-/// The variants that may be called best: the one with half of its runs solved soonest, and those not shown to differ from it. Indices of
+/// The variants that may be called best: the one with the smallest median over all runs, and those not shown to differ from it. Indices of
 /// variants in their order, the best one first.
 pub fn best(row: &[Cell<'_>], pairs: &[Pair]) -> Vec<usize> {
-    let solvers = row.iter().filter(|cell| cell.half_solved_s().is_finite());
-    let Some(first) = solvers.clone().min_by(|a, b| a.half_solved_s().total_cmp(&b.half_solved_s())) else {
+    let solvers = row.iter().filter(|cell| cell.median_of_all_s().is_finite());
+    let Some(first) = solvers.clone().min_by(|a, b| a.median_of_all_s().total_cmp(&b.median_of_all_s()))
+    else {
         return Vec::new();
     };
     let differs = |other: usize| {
