@@ -1,6 +1,8 @@
 //! Start and goals: grasps that are given are checked, grasps that are not given are found.
 
 use crate::error::{End, PlanError, explain};
+use crate::foresight::outlook;
+use crate::query::Length;
 use crate::session::{Call, Session};
 use regrasp_api::{
     CallError, Configuration, Contact, Context, FingerGrasp, FingerIndex, FingerJoints, FingerSet,
@@ -116,6 +118,17 @@ pub(crate) fn warning(
 ) -> Result<Option<String>, CallError> {
     let refused = task.admissible.admit(task, q, context)?;
     Ok(refused.map(|reason| format!("the given grasp at `{end}` may be a dead end: {}", explain(reason))))
+}
+
+/// Sorts grasps at one pose by how far the object seems to roll from there towards `others`, farthest first.
+pub(crate) fn sort_by_ease<'p>(
+    task: &Task<'_>,
+    found: &mut [Configuration],
+    others: impl Iterator<Item = &'p Pose> + Clone,
+) {
+    // Fractions with a small power of two below: their sums are exact, and ties keep the order in which the grasps were found.
+    let ease = |q: &Configuration| others.clone().map(|X_HO| outlook(task, q, X_HO).fraction).sum::<f64>();
+    found.sort_by_cached_key(|q| std::cmp::Reverse(Length(ease(q))));
 }
 
 /// Grasps at a pose, found one after the other: the `k`-th is a pure function of its number.

@@ -2,14 +2,14 @@
 
 use crate::session::Session;
 use crate::steps;
-use regrasp_api::{CallError, Configuration, Context, FingerIndex, FingerSet, Task};
+use regrasp_api::{CallError, Configuration, Context, FingerIndex, FingerSet, MAX_FINGERS, Task};
 use regrasp_plan::Segment;
 
 /// Depth-first search over the orders of the fingers.
 ///
 /// What is left to move decides everything that comes, so sets of fingers are remembered: those from which no order
-/// keeps the grasp stable, found out first because a stability test costs a hundredth of a finger's path, and those from
-/// which the paths failed.
+/// keeps the grasp stable and the fingers out of each other's places, found out first because it costs a hundredth of a finger's path, and
+/// those from which the paths failed.
 pub(crate) struct Order<'a> {
     session: &'a Session<'a>,
     task: &'a Task<'a>,
@@ -17,6 +17,8 @@ pub(crate) struct Order<'a> {
     to: &'a Configuration,
     /// Whether some order of the fingers in the set keeps the grasp stable, where it is known.
     hopeful: [Option<bool>; 256],
+    /// For each finger those that it would touch where it goes, as long as they are where they were; where it is known.
+    barring: [Option<FingerSet>; MAX_FINGERS],
     dead: [bool; 256],
     steps: Vec<Segment>,
 }
@@ -28,7 +30,16 @@ impl<'a> Order<'a> {
         from: &'a Configuration,
         to: &'a Configuration,
     ) -> Self {
-        Self { session, task, from, to, hopeful: [None; 256], dead: [false; 256], steps: Vec::new() }
+        Self {
+            session,
+            task,
+            from,
+            to,
+            hopeful: [None; 256],
+            barring: [None; MAX_FINGERS],
+            dead: [false; 256],
+            steps: Vec::new(),
+        }
     }
 
     /// The regrasps in an order that works, if there is one.
@@ -67,14 +78,32 @@ impl<'a> Order<'a> {
         Ok(false)
     }
 
-    /// Whether `finger` of the fingers `left` may be lifted, and some order of the rest be kept stable.
+    /// Whether `finger` of the fingers `left` may be lifted and set down, and some order of the rest be kept stable.
     fn is_hopeful(
         &mut self,
         left: FingerSet,
         finger: FingerIndex,
         context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
-        Ok(self.may_lift(left, finger, context)? && self.some_order(left.without(finger), context)?)
+        let is_barred = !self.barring(finger).intersection(left).is_empty();
+        Ok(!is_barred
+            && self.may_lift(left, finger, context)?
+            && self.some_order(left.without(finger), context)?)
+    }
+
+    /// The fingers that must go before `finger` can come to where it goes.
+    fn barring(&mut self, finger: FingerIndex) -> FingerSet {
+        if let Some(known) = self.barring[finger.index()] {
+            return known;
+        }
+        let goes = (finger, &self.to.joints[finger]);
+        let touches = |&other: &FingerIndex| {
+            other != finger
+                && self.task.clearance.fingers_free(goes, (other, &self.from.joints[other])).is_err()
+        };
+        let barring = self.from.joints.fingers().filter(touches).collect();
+        self.barring[finger.index()] = Some(barring);
+        barring
     }
 
     fn some_order(&mut self, left: FingerSet, context: &mut Context<'_>) -> Result<bool, CallError> {

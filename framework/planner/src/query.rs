@@ -14,7 +14,7 @@ pub(crate) struct Step {
 
 /// A distance that orders totally.
 #[derive(Clone, Copy, PartialEq)]
-struct Length(f64);
+pub(crate) struct Length(pub f64);
 impl Eq for Length {}
 impl PartialOrd for Length {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {

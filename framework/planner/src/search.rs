@@ -3,6 +3,7 @@
 use crate::decompose::decompose;
 use crate::endpoints::Finder;
 use crate::graph::{Graph, LegView};
+use crate::meet;
 use crate::query::{Step, shortest_path};
 use crate::session::{Call, Counted, Session};
 use crate::steps;
@@ -215,7 +216,7 @@ impl Search<'_> {
     fn connect_outside(&mut self, a: NodeId, b: NodeId) -> Result<(), CallError> {
         let (from, to) = (self.graph.node(a), self.graph.node(b));
         let found = self.session.counted(Call::TransferRegrasp, u64::from(a.0), u64::from(b.0), |context| {
-            steps::connect(self.session, &self.task, from, to, context)
+            meet::connect(self.session, &self.task, from, to, context)
         });
         self.tally.add(&found.tally);
         if let Some(segments) = found.result? {

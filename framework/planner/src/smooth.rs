@@ -6,6 +6,7 @@
 //! end or start at a goal's pose, never pass it by.
 
 use crate::draft::{Draft, Station, regrasps};
+use crate::foresight::barred_half_way;
 use crate::session::{Call, Counted, Session};
 use crate::steps;
 use regrasp_api::{CallError, Configuration, Context, FingerSet, Tally, Task};
@@ -100,7 +101,7 @@ impl Smoother<'_> {
         all.retain(|shortcut| {
             self.fewest_regrasps(shortcut) < self.regrasps_between(shortcut)
                 && !self.failed.contains(&self.key(shortcut))
-                && steps::barred_half_way(self.task, &self.departure(shortcut), self.arrival(shortcut))
+                && barred_half_way(self.task, &self.departure(shortcut), &self.arrival(shortcut).X_HO)
                     .is_none()
         });
         all
@@ -130,7 +131,7 @@ impl Smoother<'_> {
         };
         let to = self.arrival(shortcut);
         let rest = if self.draft.is_free_end(shortcut.to.end) {
-            let (reached, segment) = steps::transfer(session, task, &there, to, context)?;
+            let (reached, segment) = steps::transfer(session, task, &there, &to.X_HO, context)?;
             reached.is_complete().then(|| vec![segment])
         } else {
             steps::transfer_then_regrasp(session, task, &there, to, context)?

@@ -18,6 +18,9 @@ use regrasp_api::{
 use regrasp_plan::{Motion, Segment, Statistics, TimingLimits, assign_times, plugin_statistics};
 use std::collections::BTreeSet;
 
+/// How many grasps are looked for at a start given by its pose alone; the search begins in the one from which the object seems to roll farthest
+/// towards the first goal.
+const FIRST_STARTS: usize = 12;
 /// How many grasps are looked for at a goal given by its pose alone before the search starts: a grasp costs a hundredth of a plan,
 /// and of the paper's problems all need fewer nodes, regrasps and instructions with six than with two or twelve.
 const FIRST_GOALS: usize = 6;
@@ -130,6 +133,12 @@ fn pool(threads: usize) -> Option<rayon::ThreadPool> {
     (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()).flatten()
 }
 
+/// The poses before and after the one at `place`.
+fn neighbours(poses: &[Pose], place: usize) -> impl Iterator<Item = &Pose> + Clone {
+    let around = place.saturating_sub(1)..poses.len().min(place + 2);
+    around.filter(move |&k| k != place).map(|k| &poses[k])
+}
+
 /// Why the legs ended before the last goal.
 enum Halt {
     Stuck(Stuck),
@@ -167,7 +176,7 @@ struct Run<'a> {
 impl Run<'_> {
     fn legs(&mut self) -> Result<(), Halt> {
         let grasp = self.request.problem.start.grasp.as_deref();
-        let (start, _) = self.timed("endpoints", |run| run.end(End::Start, run.poses[0], grasp))?;
+        let (start, _) = self.timed("endpoints", |run| run.end(End::Start, grasp))?;
         let mut node = *start.first().ok_or(Halt::Stuck(Stuck::StartGrasp))?;
         self.ends.push((End::Start, node));
         for leg in 0..self.request.problem.goal.len() {
@@ -179,8 +188,7 @@ impl Run<'_> {
     /// One leg: the goal's grasps, the search, and the node in which it ends.
     fn leg(&mut self, leg: usize, start: NodeId) -> Result<NodeId, Halt> {
         let grasp = self.request.problem.goal[leg].grasp.as_deref();
-        let (goals, finder) =
-            self.timed("endpoints", |run| run.end(End::Goal(leg), run.poses[leg + 1], grasp))?;
+        let (goals, finder) = self.timed("endpoints", |run| run.end(End::Goal(leg), grasp))?;
         if goals.is_empty() {
             return Err(Halt::Stuck(Stuck::GoalGrasp(leg)));
         }
@@ -225,27 +233,30 @@ impl Run<'_> {
         found
     }
 
-    /// The nodes of one end of the problem, and what finds more of them.
+    /// The nodes of one end of the problem, those that seem easiest to leave first, and what finds more of them; one for the start.
     fn end(
         &mut self,
         end: End,
-        X_HO: Pose,
         grasp: Option<&[FingerGrasp]>,
     ) -> Result<(Vec<NodeId>, Option<Finder>), Halt> {
-        let (kind, leg, count) = match end {
-            End::Start => (Call::Start, 0, 1),
-            End::Goal(index) => (Call::Goal, index as u64, FIRST_GOALS),
+        let (kind, place, count) = match end {
+            End::Start => (Call::Start, 0, FIRST_STARTS),
+            End::Goal(index) => (Call::Goal, index + 1, FIRST_GOALS),
         };
+        let X_HO = self.poses[place];
         if let Some(grasp) = grasp {
             let q = self.given(end, X_HO, grasp)?;
             return Ok((vec![self.graph.add_node(q)], None));
         }
+        let leg = place.saturating_sub(1) as u64;
         let mut finder = Finder { kind, leg, X_HO, calls: 0 };
-        let mut nodes = Vec::new();
+        let mut found = Vec::new();
         for _ in 0..count {
-            let found = finder.next(self.session, &self.task, &self.choices, &mut self.tally)?;
-            nodes.extend(found.map(|q| self.graph.add_node(q)));
+            found.extend(finder.next(self.session, &self.task, &self.choices, &mut self.tally)?);
         }
+        endpoints::sort_by_ease(&self.task, &mut found, neighbours(self.poses, place));
+        found.truncate(if end == End::Start { 1 } else { count });
+        let nodes = found.into_iter().map(|q| self.graph.add_node(q)).collect();
         Ok((nodes, Some(finder)))
     }
 

@@ -3,27 +3,22 @@
 use crate::order::Order;
 use crate::session::Session;
 use regrasp_api::{
-    CallError, Configuration, Context, FingerIndex, FingerSet, Path, Reached, Reason, Slot, Target, Task,
-    interpolate,
+    CallError, Configuration, Context, FingerIndex, FingerSet, Path, Pose, Reached, Target, Task,
+    angle_between,
 };
 use regrasp_plan::{Segment, SegmentKind};
 
-/// Rolls the object towards the pose of `to`, and stores the motion as a segment if it moved at all.
+/// Rolls the object towards a pose, and stores the motion as a segment if it moved at all.
 pub(crate) fn transfer(
     session: &Session<'_>,
     task: &Task<'_>,
     from: &Configuration,
-    to: &Configuration,
+    to: &Pose,
     context: &mut Context<'_>,
 ) -> Result<(Reached, Segment), CallError> {
     let mut path = Path::default();
-    let reached = session.drivers.transfer.connect(
-        task,
-        from,
-        &Target::Transfer(&to.X_HO),
-        Some(&mut path),
-        context,
-    )?;
+    let reached =
+        session.drivers.transfer.connect(task, from, &Target::Transfer(to), Some(&mut path), context)?;
     Ok((reached, Segment { kind: SegmentKind::Transfer, states: path.states, times: Vec::new() }))
 }
 
@@ -38,7 +33,7 @@ pub(crate) fn transfer_then_regrasp(
     let mut steps = Vec::new();
     let mut there = from.clone();
     if from.X_HO != to.X_HO {
-        let (reached, segment) = transfer(session, task, from, to, context)?;
+        let (reached, segment) = transfer(session, task, from, &to.X_HO, context)?;
         if !reached.is_complete() {
             return Ok(None);
         }
@@ -50,54 +45,46 @@ pub(crate) fn transfer_then_regrasp(
     Ok(Some(steps))
 }
 
-/// What bars the fingers half-way to the pose of `to` if their contacts stay where they are: a look that costs a hundredth of a
-/// roll and foresees most of its failures.
+/// The configuration in which a segment ends.
+pub(crate) fn end(segment: &Segment) -> &Configuration {
+    segment.states.last().expect("a segment has its start")
+}
+
+/// A roll cut short, or rolled on, so that it ends exactly at a pose on its way; `None` if it cannot be rolled that far.
 ///
-/// A heuristic: contacts drift as the fingertips roll. Of 600 rolls of the paper's problems that succeeded it would have
-/// barred two, of 8,000 that failed two thirds.
-pub(crate) fn barred_half_way(task: &Task<'_>, from: &Configuration, to: &Configuration) -> Option<Reason> {
-    let mut q = from.clone();
-    q.X_HO = interpolate(&from.X_HO, &to.X_HO, 0.5);
-    for finger in from.joints.fingers() {
-        if let Some(p_HF) = q.contact_tip_center(finger, task.hand.fingertip_radius()) {
-            match task.hand.inverse(finger, &p_HF, &from.joints[finger]) {
-                Some(joints) => q.joints[finger] = joints,
-                None => return Some(Reason::Reach),
-            }
-        }
-    }
-    let all = FingerSet::first(q.joints.len());
-    task.clearance.configuration_free(&q, all, true).err().map(|_| Reason::Collision)
-}
-
-/// As [`transfer_then_regrasp`], also tried backwards: a motion reversed is a motion.
-pub(crate) fn connect(
+/// What is rolled on stays with `rolled`.
+pub(crate) fn rolled_to(
     session: &Session<'_>,
     task: &Task<'_>,
-    from: &Configuration,
-    to: &Configuration,
+    rolled: &mut Segment,
+    X_HO: &Pose,
     context: &mut Context<'_>,
-) -> Result<Option<Vec<Segment>>, CallError> {
-    if let Some(steps) = hopeful_transfer(session, task, from, to, context)? {
-        return Ok(Some(steps));
-    }
-    Ok(hopeful_transfer(session, task, to, from, context)?.map(reversed))
-}
-
-fn hopeful_transfer(
-    session: &Session<'_>,
-    task: &Task<'_>,
-    from: &Configuration,
-    to: &Configuration,
-    context: &mut Context<'_>,
-) -> Result<Option<Vec<Segment>>, CallError> {
-    match barred_half_way(task, from, to) {
-        None => transfer_then_regrasp(session, task, from, to, context),
-        Some(reason) => {
-            context.reject(Slot::TransferPlanner, reason);
-            Ok(None)
+) -> Result<Option<Segment>, CallError> {
+    let last = farthest(&rolled.states, 0, X_HO);
+    let mut states = rolled.states[..=last].to_vec();
+    let from = states[last].clone();
+    let mut complete = from.X_HO == *X_HO;
+    if !complete {
+        let (reached, rest) = transfer(session, task, &from, X_HO, context)?;
+        states.extend(rest.states.into_iter().skip(1));
+        complete = reached.is_complete();
+        if last + 1 == rolled.states.len() {
+            rolled.states.clone_from(&states);
         }
     }
+    Ok(complete.then(|| Segment { kind: SegmentKind::Transfer, states, times: Vec::new() }))
+}
+
+/// The last of the states after `at`, which lie on one straight motion of the object, that is no farther along it than `end`.
+pub(crate) fn farthest(states: &[Configuration], at: usize, end: &Pose) -> usize {
+    let progress = |X_HO: &Pose| {
+        let start = &states[at].X_HO;
+        let moved = (X_HO.translation.vector - start.translation.vector).norm();
+        // Metres and radians grow in proportion along one path: any positive weights give the same order.
+        moved + angle_between(&X_HO.rotation, &start.rotation)
+    };
+    let reached = progress(end);
+    (at..states.len()).take_while(|&i| progress(&states[i].X_HO) <= reached).last().unwrap_or(at)
 }
 
 /// The steps backwards: stored states reversed, nothing integrated again.

@@ -1,6 +1,7 @@
 //! `graph-strategy/interleaved`: the paper's Algorithm 1 with a biased α.
 //!
-//! While start and goal lie in different components, draw α: 0 explores GS_n (Algorithm 2), 1 tries to connect a random
+//! First the start is tried to be joined to each goal by transfer and regrasps (Algorithm 3). Then, while start and goal lie in
+//! different components, draw α: 0 explores GS_n (Algorithm 2), 1 tries to connect a random
 //! node with another component by transfer and regrasps (Algorithm 3). The paper wants the probability of α = 1 low at
 //! first and rising as the graph grows, and leaves its law open; ours is
 //! `P(α = 1) = start + (end - start) · (1 - exp(-nodes / growth))`.
@@ -68,7 +69,7 @@ impl GraphStrategy for Interleaved {
         if graph.joined() {
             return Ok(Action::Query);
         }
-        if let Some(action) = join_ends(graph) {
+        if let Some(action) = reach_goals(graph).or_else(|| join_ends(graph)) {
             return Ok(action);
         }
         let (generated, most) = graph.generated();
@@ -82,6 +83,18 @@ impl GraphStrategy for Interleaved {
             None => Action::Explore(Link::Components),
         })
     }
+}
+
+/// The start and a goal that were not tried to be joined by transfer and regrasps.
+///
+/// The paper connects both to the graph outside of GS_n at the end (section IV.D); tried at the beginning, between the two, it makes most of
+/// the graph superfluous where the way is short.
+fn reach_goals(graph: &dyn GraphView) -> Option<Action> {
+    let start = graph.start();
+    let untried =
+        |&&goal: &&NodeId| goal != start && !graph.attempted(start, goal, EdgeKind::TransferRegrasp);
+    let goal = graph.goals().iter().find(untried)?;
+    Some(Action::Connect(start, *goal, EdgeKind::TransferRegrasp))
 }
 
 /// A random node and the nearest node of another component that was not tried with it.
