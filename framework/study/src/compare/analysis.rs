@@ -16,6 +16,8 @@ pub struct Cell<'a> {
     pub runs: Vec<&'a RunRecord>,
     /// The comparison with the baseline; absent for the baseline itself, and where it was left out.
     pub compared: Option<Compared>,
+    /// The median of each of [`Figure::ALL`], worked out once: a bootstrap takes a while.
+    medians: [Option<Estimate>; Figure::ALL.len()],
 }
 
 /// A comparison with the baseline, corrected for there being several variants.
@@ -94,6 +96,18 @@ impl Figure {
 }
 
 impl<'a> Cell<'a> {
+    fn new(
+        scenario: &'a StudyScenario,
+        variant: &'a Variant,
+        index: usize,
+        runs: Vec<&'a RunRecord>,
+    ) -> Self {
+        let mut cell = Self { scenario, variant, index, runs, compared: None, medians: Default::default() };
+        let median = |figure: Figure| median_interval(cell.successes().filter_map(|run| figure.of(run)));
+        cell.medians = Figure::ALL.map(median);
+        cell
+    }
+
     /// The runs whose plan reaches all goals and was verified.
     pub fn successes(&self) -> impl Iterator<Item = &'a RunRecord> {
         self.runs.iter().copied().filter(|run| run.is_success())
@@ -111,7 +125,7 @@ impl<'a> Cell<'a> {
 
     /// The median of a figure over the successes with its bootstrap interval; `None` for no success.
     pub fn median(&self, figure: Figure) -> Option<Estimate> {
-        median_interval(self.successes().filter_map(|run| figure.of(run)))
+        self.medians[figure as usize]
     }
 
     /// The median planning time over *all* runs (s), one that did not succeed counting as endless; infinite where half of them failed. What
@@ -145,7 +159,7 @@ pub fn analyse<'a>(study: &'a Study, records: &'a [RunRecord]) -> Vec<Vec<Cell<'
         let mut runs = runs.remove(&(scenario, index))?;
         runs.sort_by_key(|run| run.seed);
         let (scenario, variant) = (&study.scenarios[scenario], &study.variants[index]);
-        Some(Cell { scenario, variant, index, runs, compared: None })
+        Some(Cell::new(scenario, variant, index, runs))
     };
     let row = |scenario| (0..study.variants.len()).filter_map(|k| cell(scenario, k)).collect();
     let mut rows: Vec<Vec<Cell<'_>>> = (0..study.scenarios.len()).map(row).collect();

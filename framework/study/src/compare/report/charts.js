@@ -119,7 +119,12 @@ function pairMatrix(names, cells, pairs) {
     const values = cells.map((column) => pairCell(names, row, column, found.get(`${row.variant},${column.variant}`)));
     return element("tr", {}, element("th", { scope: "row" }, names[row.variant]), ...values);
   });
-  return table(["", ...cells.map((cell) => names[cell.variant])], rows, "matrix");
+  const matrix = table(["", ...cells.map((cell) => names[cell.variant])], rows, "matrix");
+  // Even if all seeds point one way, p is 2 / 2^seeds, times the number of pairs.
+  const needed = Math.floor(Math.log2((2 * pairs.length) / 0.05)) + 1;
+  const isHopeless = Math.max(...pairs.map((pair) => pair.both)) < needed;
+  const warning = `With ${pairs.length} pairs no difference can show in fewer than ${needed} seeds that both solved.`;
+  return element("div", {}, isHopeless ? element("p", { class: "quiet small" }, warning) : null, matrix);
 }
 
 function pairCell(names, row, column, entry) {

@@ -5,8 +5,11 @@ use crate::compare::statistics::{ALPHA, Estimate};
 use crate::compare::{Cell, Compared, Figure};
 use std::iter;
 
-/// Fewer pairs than this cannot reach 5 %, whatever they show.
-const FEWEST_PAIRS: usize = 6;
+/// Fewer pairs than this cannot reach 5 %, whatever they show: even if all point one way, p is `tests` · 2 / 2ⁿ after the correction for as
+/// many tests.
+fn fewest_pairs(tests: usize) -> usize {
+    (1..64).find(|n| tests as f64 * 2.0 / 2_f64.powi(*n) < ALPHA).map_or(64, |n| n as usize)
+}
 
 /// Up to so many variants are named one by one.
 const FEW: usize = 4;
@@ -19,7 +22,17 @@ pub fn finding(row: &[Cell<'_>], name: &dyn Fn(&str) -> String) -> String {
     if compared.is_empty() {
         return row.iter().map(|cell| alone(cell, name)).collect::<Vec<_>>().join(" ");
     }
-    let times = if compared.len() <= FEW { one_by_one(&compared, name) } else { counted(&compared, name) };
+    let fewest = fewest_pairs(compared.len());
+    let times = match compared
+        .iter()
+        .any(|(_, compared)| is_shown(compared) || compared.paired.both >= fewest)
+    {
+        false => format!(
+            "no difference in time could show, whatever it is: at least {fewest} seeds must be solved by both"
+        ),
+        true if compared.len() <= FEW => one_by_one(&compared, name),
+        true => counted(&compared, name),
+    };
     let sentence = format!("Against {} ({}), {times}.", name(&first.variant.name), brief(first));
     iter::once(sentence).chain(solving(first, &compared, name)).collect::<Vec<_>>().join(" ")
 }
@@ -54,11 +67,12 @@ fn one_by_one(compared: &[(&Cell<'_>, &Compared)], name: &dyn Fn(&str) -> String
         let wanted = compared.iter().filter(|(_, c)| !is_shown(c) && is_wanted(c.paired.both));
         wanted.map(|(cell, _)| name(&cell.variant.name)).collect::<Vec<_>>()
     };
-    let unclear = rest(&|both| both >= FEWEST_PAIRS);
+    let fewest = fewest_pairs(compared.len());
+    let unclear = rest(&|both| both >= fewest);
     if !unclear.is_empty() {
         parts.push(format!("no difference in time could be shown for {}", unclear.join(", ")));
     }
-    let few = rest(&|both| both < FEWEST_PAIRS);
+    let few = rest(&|both| both < fewest);
     if !few.is_empty() {
         parts.push(format!("too few seeds were solved by both to compare times with {}", few.join(", ")));
     }
@@ -76,18 +90,25 @@ fn counted(compared: &[(&Cell<'_>, &Compared)], name: &dyn Fn(&str) -> String) -
     let ratio = |compared: &Compared| compared.paired.ratio.map_or(1.0, |ratio| ratio.value);
     let mut shown: Vec<_> = compared.iter().filter(|(_, c)| is_shown(c)).collect();
     shown.sort_by(|a, b| ratio(a.1).total_cmp(&ratio(b.1)));
-    let faster = shown.iter().filter(|(_, compared)| ratio(compared) < 1.0).count();
-    let slower = shown.len() - faster;
-    let mut text = format!("{faster} of {} variants are faster", compared.len());
-    if let Some(best) = shown.first().filter(|_| faster > 0) {
-        text += &format!(" (most of all: {})", took(best, name));
+    if shown.is_empty() {
+        return format!(
+            "for none of the {} other variants could a difference in time be shown",
+            compared.len()
+        );
     }
-    text += &format!(", {slower} slower");
-    if let Some(worst) = shown.last().filter(|_| slower > 0) {
-        text += &format!(" (most of all: {})", took(worst, name));
-    }
-    let rest = compared.len() - shown.len();
-    text + &format!("; for {rest} no difference in time could be shown")
+    let (faster, slower) = shown.split_at(shown.partition_point(|(_, compared)| ratio(compared) < 1.0));
+    let most = |pair: Option<&&(&Cell<'_>, &Compared)>| {
+        pair.map(|pair| format!(" (most of all {})", took(pair, name))).unwrap_or_default()
+    };
+    format!(
+        "of {} other variants {} are shown to be faster{}, {} to be slower{}; for {} no difference in time could be shown",
+        compared.len(),
+        faster.len(),
+        most(faster.first()),
+        slower.len(),
+        most(slower.last()),
+        compared.len() - shown.len()
+    )
 }
 
 /// Whether some variant solves more or fewer; nothing where all solved everything.

@@ -46,12 +46,13 @@ fn left_out_line(pair: &LeftOut) -> String {
     format!("\nNot planned by {}: {}\n", code(&pair.variant), plain(&pair.reason))
 }
 
-const HEAD: [&str; 9] = [
+const HEAD: [&str; 10] = [
     "variant",
     "solved",
     "% (95 %)",
     "ms (95 %)",
     "times as long (95 %)",
+    "effect",
     "p",
     "generated",
     "graph",
@@ -59,7 +60,7 @@ const HEAD: [&str; 9] = [
 ];
 
 fn table(scenario: &StudyScenario, row: &[Cell<'_>]) -> String {
-    let mut lines: Vec<[String; 9]> = vec![HEAD.map(str::to_owned)];
+    let mut lines: Vec<[String; 10]> = vec![HEAD.map(str::to_owned)];
     lines.extend(row.iter().map(cells));
     if let Some(paper) = &scenario.paper {
         let name = format!("*published: {}, averages*", plain(&paper.example));
@@ -67,12 +68,12 @@ fn table(scenario: &StudyScenario, row: &[Cell<'_>]) -> String {
         let time = format!("{}", paper.time_s * 1e3);
         let counts = [paper.generated_nodes, paper.graph_nodes].map(|count| count.to_string());
         let [generated, graph] = counts;
-        lines.push([name, none(), none(), time, none(), none(), generated, graph, none()]);
+        lines.push([name, none(), none(), time, none(), none(), none(), generated, graph, none()]);
     }
     aligned(&lines)
 }
 
-fn cells(cell: &Cell<'_>) -> [String; 9] {
+fn cells(cell: &Cell<'_>) -> [String; 10] {
     let median =
         |figure: Figure| cell.median(figure).map(|found| count_text(found.value)).unwrap_or_default();
     let paired = cell.compared.as_ref();
@@ -84,6 +85,7 @@ fn cells(cell: &Cell<'_>) -> [String; 9] {
         cell.success().map(percent).unwrap_or_default(),
         cell.median(Figure::Planning).map(milliseconds).unwrap_or_default(),
         paired.and_then(|compared| compared.paired.ratio).map(ratio_text).unwrap_or_default(),
+        paired.map(|compared| format!("{:+.2}", compared.paired.effect)).unwrap_or_default(),
         paired.map(|compared| p_text(compared.time_p)).unwrap_or_default(),
         median(Figure::GeneratedNodes),
         median(Figure::GraphNodes),
@@ -92,10 +94,10 @@ fn cells(cell: &Cell<'_>) -> [String; 9] {
 }
 
 /// The table with its columns lined up, the first flush left, the others flush right.
-fn aligned(lines: &[[String; 9]]) -> String {
+fn aligned(lines: &[[String; 10]]) -> String {
     let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..HEAD.len()).map(width).collect();
-    let text = |line: &[String; 9]| {
+    let text = |line: &[String; 10]| {
         let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| match column {
             0 => format!(" {cell:<width$} "),
             _ => format!(" {cell:>width$} "),

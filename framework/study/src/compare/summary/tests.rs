@@ -26,7 +26,12 @@ fn who_solves_less_is_not_called_fast() {
     let study = study(&["rlg", "lucky"]);
     let time = |key: RunKey| (key.variant == 0 || key.seed < 2).then(|| seconds(key));
     let found = findings(&study, &runs(&study, time)).remove(0);
-    assert!(found.contains("too few seeds were solved by both to compare times with lucky"), "{found}");
+    assert!(
+        found.contains(
+            "no difference in time could show, whatever it is: at least 6 seeds must be solved by both"
+        ),
+        "{found}"
+    );
     assert!(found.contains("lucky solved fewer: 2 of 12, p = 0.002"), "{found}");
 }
 
@@ -35,14 +40,29 @@ fn many_variants_are_counted_and_one_alone_is_described() {
     let many = study(&["rlg", "a", "b", "c", "d", "e"]);
     let factor = |key: RunKey| [1.0, 0.25, 0.5, 1.0, 2.0, 4.0][key.variant];
     let found = findings(&many, &runs(&many, |key| Some(seconds(key) * factor(key)))).remove(0);
-    let expected = "2 of 5 variants are faster (most of all: a took 0.250 (0.250 to 0.250) times as long, p = 0.002), 2 slower (most of all: e";
+    let begin = "of 5 other variants 2 are shown to be faster (most of all a took 0.250 (0.250 to 0.250) times as long, p = 0.002), 2 to be slower \
+                 (most of all e took 4.00 ";
     assert!(
-        found.contains(expected) && found.contains("; for 1 no difference in time could be shown"),
+        found.contains(begin) && found.contains("; for 1 no difference in time could be shown"),
         "{found}"
     );
     let one = study(&["rlg"]);
     let found = findings(&one, &runs(&one, |key| Some(seconds(key)))).remove(0);
     assert_eq!(found, "rlg solved 12 of 12 (76 to 100 %), at the median in 15.5 (12.5 to 18.5) ms.");
+}
+
+#[test]
+fn too_few_seeds_are_not_taken_for_no_difference() {
+    let study = study(&["rlg", "slow"]);
+    let mut records = runs(&study, |key| Some(seconds(key) * [1.0, 9.0][key.variant]));
+    records.retain(|run| run.seed < 5);
+    let found = findings(&study, &records).remove(0);
+    assert!(found.contains("no difference in time could show, whatever it is: at least 6 seeds"), "{found}");
+    // The sixth seed is enough: 2/2⁶ < 0.05.
+    let mut records = runs(&study, |key| Some(seconds(key) * [1.0, 9.0][key.variant]));
+    records.retain(|run| run.seed < 6);
+    let found = findings(&study, &records).remove(0);
+    assert!(found.contains("slow took 9.00"), "{found}");
 }
 
 #[test]
