@@ -52,12 +52,18 @@ pub enum StudyError {
         slot: String,
     },
     /// The folder holds another study.
-    #[error("`{}` holds another study: {difference}; give another folder, or delete this one", folder.display())]
+    #[error(
+        "`{}` holds another study: {difference}; {}give another folder, or delete this one",
+        folder.display(),
+        if *.program { "go on with the same build of the program, or " } else { "" }
+    )]
     OtherStudy {
         /// The folder.
         folder: PathBuf,
         /// What differs first.
         difference: String,
+        /// Whether it is the program itself.
+        program: bool,
     },
     /// The folder holds other things.
     #[error("`{}` holds no study, but has `{entry}` in it; give a new or an empty folder", folder.display())]

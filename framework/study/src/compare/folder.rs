@@ -123,14 +123,20 @@ fn read_description(folder: &Path) -> Result<Study, StudyError> {
         let known = format!("this program reads version {STUDY_VERSION}");
         return Err(refuse(format!("`{STUDY_FILE}` is of format version {version}, {known}")));
     }
-    serde_json::from_value(value).map_err(|error| refuse(format!("`{STUDY_FILE}`: {error}")))
+    let study: Study =
+        serde_json::from_value(value).map_err(|error| refuse(format!("`{STUDY_FILE}`: {error}")))?;
+    match study.fault() {
+        None => Ok(study),
+        Some(fault) => Err(refuse(format!("`{STUDY_FILE}`: {fault}"))),
+    }
 }
 
 /// Takes over what a study that was begun before says of itself; refuses another study.
 fn resume(folder: &Path, study: &mut Study) -> Result<(), StudyError> {
     let begun = read_description(folder)?;
     if let Some(difference) = begun.difference(study) {
-        return Err(StudyError::OtherStudy { folder: folder.to_owned(), difference });
+        let program = difference.starts_with("`versions.");
+        return Err(StudyError::OtherStudy { folder: folder.to_owned(), difference, program });
     }
     let machines = std::mem::replace(study, begun).machines;
     study.add_machines(machines);

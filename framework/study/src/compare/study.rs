@@ -5,7 +5,7 @@ use crate::scenario::PaperFigures;
 use regrasp_api::{Problem, Slot};
 use regrasp_plan::PluginChoice;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// The version of `study.json` and `runs.jsonl` that this program reads and writes.
@@ -222,11 +222,38 @@ impl Study {
     ///
     /// The command counts for nothing, as there is more than one way to say the same, nor do machines and the time of the beginning.
     pub fn difference(&self, other: &Self) -> Option<String> {
-        let alike = |study: &Self| {
+        let names = |study: &Self| {
+            json!({
+                "scenarios": study.scenarios.iter().map(|scenario| &scenario.name).collect::<Vec<_>>(),
+                "variants": study.variants.iter().map(|variant| &variant.name).collect::<Vec<_>>(),
+                "seeds": study.seeds,
+            })
+        };
+        let all = |study: &Self| {
             let own = Self { command: Vec::new(), machines: Vec::new(), started_s: 0, ..study.clone() };
             serde_json::to_value(own).expect("a study is plain data with text keys")
         };
-        first_difference(&alike(self), &alike(other), "")
+        // What a user thinks of first comes first.
+        first_difference(&names(self), &names(other), "")
+            .or_else(|| first_difference(&all(self), &all(other), ""))
+    }
+
+    /// Says what is wrong with a study that was read, where its parts do not fit together.
+    pub(super) fn fault(&self) -> Option<String> {
+        let Seeds { first, count } = self.seeds;
+        let numbers = (self.scenarios.len() as u64).checked_mul(count).and(first.checked_add(count));
+        if numbers.is_none() {
+            return Some("`seeds` are beyond what 64 bits hold".into());
+        }
+        if self.shard.is_some_and(|shard| !(1..=shard.of).contains(&shard.part)) {
+            return Some("`shard.part` is outside 1..=`shard.of`".into());
+        }
+        let whole = |scenario: &StudyScenario| {
+            let full = |plugins: &BTreeMap<_, _>| plugins.len() == Slot::ALL.len();
+            scenario.plugins.len() == self.variants.len() && scenario.plugins.iter().all(full)
+        };
+        let index = self.scenarios.iter().position(|scenario| !whole(scenario))?;
+        Some(format!("`scenarios[{index}].plugins` does not have a plugin for each variant and slot"))
     }
 }
 
@@ -252,15 +279,21 @@ fn first_difference(a: &Value, b: &Value, path: &str) -> Option<String> {
     }
 }
 
-/// A value in at most 60 characters.
+/// A value in at most 80 characters.
 fn brief(value: &Value) -> String {
     let text = match value {
         Value::Null => "absent".to_owned(),
+        Value::Array(items) if items.iter().all(Value::is_string) => items
+            .iter()
+            .filter_map(Value::as_str)
+            .map(|item| format!("`{item}`"))
+            .collect::<Vec<_>>()
+            .join(", "),
         Value::Array(items) => format!("a list of {}", items.len()),
         Value::Object(_) => "a table".to_owned(),
         value => value.to_string(),
     };
-    if text.chars().count() <= 60 { text } else { text.chars().take(59).chain(['…']).collect() }
+    if text.chars().count() <= 80 { text } else { text.chars().take(79).chain(['…']).collect() }
 }
 
 #[cfg(test)]
@@ -276,10 +309,12 @@ mod tests {
         assert_eq!(text, "`seeds.count` is 20 there and 30 here");
         let c = json!({"seeds": {"count": 20}, "names": ["a", "c"]});
         assert_eq!(first_difference(&a, &c, "").unwrap(), "`names[1]` is \"b\" there and \"c\" here");
-        let d = json!({"seeds": {"count": 20}, "names": ["a"], "limit": 3});
-        assert!(first_difference(&a, &d, "").unwrap().contains("a list of 2 there and a list of 1 here"));
+        let d = json!({"seeds": {"count": 20}, "names": ["a", "b"], "limit": 3});
+        assert_eq!(first_difference(&a, &d, "").unwrap(), "`limit` is absent there and 3 here");
+        let f = json!({"seeds": {"count": 20}, "names": ["a"]});
+        assert_eq!(first_difference(&a, &f, "").unwrap(), "`names` is `a`, `b` there and `a` here");
         assert_eq!(first_difference(&a, &a, ""), None);
-        let e = json!({"seeds": {"count": 20}, "names": ["a", "b"], "limit": 3});
-        assert_eq!(first_difference(&a, &e, "").unwrap(), "`limit` is absent there and 3 here");
+        let e = json!({"seeds": {"count": 20}, "names": [1, {}]});
+        assert!(first_difference(&a, &e, "").unwrap().contains("`names[0]` is \"a\" there and 1 here"));
     }
 }
