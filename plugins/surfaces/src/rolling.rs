@@ -1,7 +1,7 @@
 //! A fingertip on an object's facets: whatever a surface answers besides how its paths are found.
 
 use crate::closest::ClosestPoints;
-use crate::hollows::{Follower, Room, open_facets};
+use crate::hollows::{Above, Follower, Room};
 use crate::lift::{Leg, lift};
 use crate::polyhedron::{Place, Polyhedron};
 use crate::sharp::SharpEdges;
@@ -24,8 +24,8 @@ pub(crate) struct Rolling {
     pub polyhedron: Polyhedron,
     pub closest: ClosestPoints,
     sharp: SharpEdges,
-    /// For each facet whether the fingertip can sink into nothing while it touches there; empty where no fingertip can.
-    open: Vec<bool>,
+    /// What the fingertip may sink into; empty where it can nowhere.
+    above: Above,
     /// The fingertip's radius (m).
     radius: f64,
     /// Largest distance (m) between two places of the fingertip that are looked at on solids that are not convex.
@@ -48,7 +48,7 @@ impl Rolling {
         let can_sink = !polyhedron.convex && radius > 0.0;
         Self {
             areas: areas.collect(),
-            open: if can_sink { open_facets(&polyhedron, &closest, radius) } else { Vec::new() },
+            above: if can_sink { Above::new(&polyhedron, &closest, radius) } else { Above::default() },
             closest,
             sharp: SharpEdges::new(&polyhedron, sharp_angle_deg.to_radians()),
             polyhedron,
@@ -112,8 +112,8 @@ impl Rolling {
     }
 
     fn follower(&self) -> Follower<'_> {
-        let Self { polyhedron, closest, open, radius, step, .. } = self;
-        Follower { polyhedron, closest, open, radius: *radius, step: *step }
+        let Self { polyhedron, closest, above, radius, step, .. } = self;
+        Follower { polyhedron, closest, above, radius: *radius, step: *step }
     }
 
     /// The vertex farthest along a direction, with that direction as its normal: a contact that every fingertip reaches.
@@ -138,7 +138,7 @@ impl Rolling {
 }
 
 /// Length (m) of a path over the facets.
-fn length(legs: &[Leg], end: &Contact) -> f64 {
+pub(crate) fn length(legs: &[Leg], end: &Contact) -> f64 {
     let ends = legs.iter().skip(1).map(|leg| leg.p_OP).chain([end.p_OC]);
     legs.iter().zip(ends).map(|(leg, to)| (to - leg.p_OP).norm()).sum()
 }

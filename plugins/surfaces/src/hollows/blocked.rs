@@ -1,45 +1,14 @@
 //! Where a ball that rolls over the facets one by one would sink into others.
 
-use super::{Follower, SAME, SINK, between};
-use crate::closest::{ClosestPoints, closest_of_facet};
-use crate::polyhedron::Polyhedron;
-use regrasp_api::{Contact, Projection, Vec3};
+use super::above::{self, rises};
+use super::{Follower, PARALLEL, SAME, SINK, between};
+use crate::closest::closest_of_facet;
+use regrasp_api::{Contact, Projection, Vec3, Waypoint};
 
-/// Balls larger than the fingertip by this factor are looked at around a facet: enough for all places of a turn between two
-/// facets whose normals differ by [`GENTLE`] at most.
-///
-/// With n = α n_A + β n_B between the two normals, a point that the ball at n holds lies in one of the balls at n_A and n_B
-/// of the radius α + β ≤ 1 / cos(GENTLE / 2).
-const SWELL: f64 = 1.021;
-/// The cosine of 0.4 rad.
-const GENTLE: f64 = 0.921;
-/// Facets around one facet that are looked at before it counts as not open: a bound of the time to prepare an object.
-const MOST_AROUND: usize = 500;
 /// Newton steps before a ball that grazes a facet counts as blocked.
 const NEWTON_STEPS: usize = 40;
 /// Distance (m) to the depth looked for at which Newton's method has arrived.
 const ARRIVED: f64 = 1e-13;
-
-/// For each facet whether a ball that touches it sinks into nothing, wherever on the facet: no facet around rises above its plane.
-pub(crate) fn open_facets(polyhedron: &Polyhedron, closest: &ClosestPoints, radius: f64) -> Vec<bool> {
-    let is_open = |facet: u32| {
-        let corners = &polyhedron.corners[facet as usize];
-        let n = polyhedron.mesh.normal(facet);
-        let middle = corners.iter().sum::<Vec3>() / 3.0;
-        let width = corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
-        let mut count = 0;
-        !closest.any_box(&(middle + n * (SWELL * radius)), SWELL * radius + width, |other| {
-            count += 1;
-            count > MOST_AROUND || rises(polyhedron, other, &middle, &n)
-        })
-    };
-    (0..polyhedron.corners.len() as u32).map(is_open).collect()
-}
-
-/// Whether a facet rises above the plane through `p` with the normal `n`.
-fn rises(polyhedron: &Polyhedron, facet: u32, p: &Vec3, n: &Vec3) -> bool {
-    polyhedron.corners[facet as usize].iter().any(|corner| n.dot(&(corner - p)) > SINK / 2.0)
-}
 
 /// Part of a path: the contact goes straight, or the ball turns about it.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +20,11 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    fn is_straight(&self) -> bool {
+    pub(super) fn new(from: &Waypoint, to: &Waypoint) -> Self {
+        Self { from: from.contact, to: to.contact, travel: to.lift_length - from.lift_length }
+    }
+
+    pub(super) fn is_straight(&self) -> bool {
         self.from.n_O == self.to.n_O
     }
 
@@ -67,13 +40,16 @@ impl Follower<'_> {
     /// Exact on straight pieces: the distance from a facet is convex along a line, so Newton's method comes to the place
     /// without passing it. Turns are looked at every `step`.
     pub(super) fn blocked(&self, piece: &Piece, sink: f64, near: &mut Vec<u32>) -> Option<[f64; 2]> {
-        if self.is_open(piece) {
+        if self.turns_freely(piece) {
             return None;
         }
-        self.gather(piece, near);
+        self.obstacles(piece, near);
+        if near.is_empty() {
+            return None;
+        }
         let (from, to) = (piece.from.tip_center(self.radius), piece.to.tip_center(self.radius));
         if !piece.is_straight() {
-            return if near.is_empty() { None } else { self.blocked_turn(piece, sink, near) };
+            return self.blocked_turn(piece, sink, near);
         }
         let mut all: Option<[f64; 2]> = None;
         for &facet in near.iter() {
@@ -86,30 +62,79 @@ impl Follower<'_> {
         all.map(|[enter, leave]| [enter, leave.max(enter)])
     }
 
-    /// Whether no facet can be in the way of a piece, by what is known of its facets.
-    fn is_open(&self, piece: &Piece) -> bool {
-        let is_open = |contact: &Contact| self.open[contact.facet as usize];
-        let is_flat = |contact: &Contact| contact.n_O == self.polyhedron.mesh.normal(contact.facet);
-        let (from, to) = (&piece.from, &piece.to);
-        let gentle = from.facet == to.facet || from.n_O.dot(&to.n_O) > GENTLE;
-        is_open(from) && is_open(to) && is_flat(from) && is_flat(to) && gentle
-    }
-
     /// Collects the facets that the ball may sink into on a piece.
     ///
     /// A point x inside the ball that touches p with the normal n has |x - p|² < 2 r n·(x - p): it lies above n's plane, and on a
     /// turn above the plane of one of the ends.
-    fn gather(&self, piece: &Piece, near: &mut Vec<u32>) {
+    fn obstacles(&self, piece: &Piece, near: &mut Vec<u32>) {
         near.clear();
         let (from, to) = (&piece.from, &piece.to);
         let middle = piece.at(0.5).tip_center(self.radius);
-        self.closest.any_box(&middle, self.radius + piece.travel / 2.0, |facet| {
+        let reach = self.radius + piece.travel / 2.0;
+        if let Some([over_from, over_to]) = self.known(piece) {
+            let is_near = |facet: &&u32| self.above.comes_within(**facet, &middle, reach);
+            near.extend(over_from.iter().chain(over_to).filter(is_near));
+            return;
+        }
+        self.closest.any_box(&middle, reach, |facet| {
             let over = |contact: &Contact| rises(self.polyhedron, facet, &contact.p_OC, &contact.n_O);
             if over(from) || (!piece.is_straight() && over(to)) {
                 near.push(facet);
             }
             false
         });
+    }
+
+    /// The facets above those of a piece's ends, where they are known and nothing else can be in the way.
+    fn known(&self, piece: &Piece) -> Option<[&[u32]; 2]> {
+        let (from, to) = (&piece.from, &piece.to);
+        if !self.is_flat(from) || !self.is_flat(to) {
+            return None;
+        }
+        if from.facet == to.facet {
+            return Some([self.above.facet(from.facet)?, &[]]);
+        }
+        let gentle = from.n_O.dot(&to.n_O) > above::GENTLE;
+        gentle.then_some([self.above.facet(from.facet)?, self.above.facet(to.facet)?])
+    }
+
+    /// Whether balls at both ends of a turn, so large that together they hold every ball in between, sink into nothing.
+    fn turns_freely(&self, piece: &Piece) -> bool {
+        let (from, to) = (&piece.from, &piece.to);
+        let cos = from.n_O.dot(&to.n_O);
+        if piece.is_straight() || cos < above::GENTLE || !self.is_flat(from) || !self.is_flat(to) {
+            return false;
+        }
+        let radius = self.radius / ((1.0 + cos) / 2.0).sqrt();
+        [from, to].into_iter().all(|contact| {
+            let p_OB = contact.tip_center(radius);
+            self.above
+                .facet(contact.facet)
+                .is_some_and(|known| !self.is_hit(known, &p_OB, radius - SINK / 2.0))
+        })
+    }
+
+    /// Whether one of some facets comes within `reach` (m) of a place.
+    fn is_hit(&self, facets: &[u32], p_OF: &Vec3, reach: f64) -> bool {
+        facets.iter().any(|&facet| {
+            self.above.comes_within(facet, p_OF, reach)
+                && closest_of_facet(self.polyhedron, p_OF, facet).distance < reach
+        })
+    }
+
+    /// Whether a contact has its facet's normal.
+    fn is_flat(&self, contact: &Contact) -> bool {
+        (contact.n_O - self.polyhedron.mesh.normal(contact.facet)).norm_squared() < PARALLEL * PARALLEL
+    }
+
+    /// Whether the ball at a contact touches nothing but the contact point.
+    pub fn is_free(&self, contact: &Contact, sink: f64) -> bool {
+        let (p_OF, least) = (contact.tip_center(self.radius), self.radius - sink);
+        let known = if self.is_flat(contact) { self.above.facet(contact.facet) } else { None };
+        known.map_or_else(
+            || self.closest.is_clear(self.polyhedron, &p_OF, least),
+            |known| !self.is_hit(known, &p_OF, least),
+        )
     }
 
     /// The fraction of the way `along` (m) from a place at which the ball touches a facet; `None` if it does not reach it.

@@ -5,15 +5,16 @@
 //! straight, pushed out (or back) wherever the straight way does not touch (`touch`). In a concave edge both places are the
 //! same, and the contact jumps from one facet to the other.
 
+mod above;
 mod blocked;
 mod touch;
 
 use crate::closest::{ClosestPoints, closest_of_facet};
 use crate::lift::angle;
 use crate::polyhedron::Polyhedron;
+pub(crate) use above::Above;
 use blocked::Piece;
-pub(crate) use blocked::open_facets;
-use regrasp_api::{Contact, Projection, SurfacePath, Vec3, Waypoint, slerp_normals};
+use regrasp_api::{Contact, SurfacePath, Waypoint, slerp_normals};
 use touch::Touch;
 
 /// Depth (m) to which the ball may sink into the facets: rounding, far below every tolerance of a plan.
@@ -25,6 +26,8 @@ const STRAY: f64 = 5e-7;
 /// How far (m), in fingertip radii, the contact of a waypoint may lie from the point that the ball touches: so far the
 /// normals differ (rad).
 const ASIDE: f64 = 1e-4;
+/// Directions (unit vectors) that differ by less are one.
+const PARALLEL: f64 = 1e-9;
 /// Two centres this close (m) are one place.
 const SAME: f64 = 2e-10;
 /// Places looked at in one hollow before the fingertip counts as stuck.
@@ -42,19 +45,13 @@ pub(crate) struct Room {
 pub(crate) struct Follower<'a> {
     pub polyhedron: &'a Polyhedron,
     pub closest: &'a ClosestPoints,
-    /// For each facet whether the ball can sink into nothing while it touches there.
-    pub open: &'a [bool],
+    pub above: &'a Above,
     pub radius: f64,
     /// Largest distance (m) between two places that are looked at on turns and in hollows.
     pub step: f64,
 }
 
 impl Follower<'_> {
-    /// Whether the ball at a contact touches nothing but the contact point.
-    pub fn is_free(&self, contact: &Contact, sink: f64) -> bool {
-        self.closest.is_clear(self.polyhedron, &contact.tip_center(self.radius), self.radius - sink)
-    }
-
     /// Rewrites `path`, whose waypoints roll over the facets, so that the ball sinks into nothing; `false` where it cannot go.
     pub fn follow(&self, path: &mut SurfacePath, room: &mut Room) -> bool {
         let Room { rolled, near } = room;
@@ -67,10 +64,27 @@ impl Follower<'_> {
             return false;
         }
         let mut left_at: Option<Touch> = None;
-        for pair in rolled.windows(2) {
-            let travel = pair[1].lift_length - pair[0].lift_length;
-            let piece = Piece { from: pair[0].contact, to: pair[1].contact, travel };
-            if !self.pass(path, &piece, &mut left_at, near) {
+        let piece = |index: usize| Some(Piece::new(rolled.get(index)?, rolled.get(index + 1)?));
+        let mut known_ahead = None;
+        for index in 0..rolled.len() - 1 {
+            let Some(here) = piece(index) else { break };
+            let blocked = match (known_ahead.take(), piece(index + 1)) {
+                (Some(known), _) => known,
+                // Of a short turn only the ends are looked at, and they are its neighbours' too.
+                (None, Some(next))
+                    if here.travel <= self.step && !here.is_straight() && next.is_straight() =>
+                {
+                    let ahead = self.blocked(&next, SINK, near);
+                    known_ahead = Some(ahead);
+                    match (&left_at, ahead) {
+                        (Some(_), _) => Some([0.0, 1.0]),
+                        (None, Some([0.0, _])) => self.blocked(&here, SINK, near),
+                        (None, _) => None,
+                    }
+                }
+                (None, _) => self.blocked(&here, SINK, near),
+            };
+            if !self.pass(path, &here, blocked, &mut left_at, near) {
                 return false;
             }
         }
@@ -78,15 +92,15 @@ impl Follower<'_> {
         left_at.is_none_or(|left| self.slide(path, &left, &self.touch(last), near))
     }
 
-    /// Appends a piece of the rolled path; `left_at` is where the ball left it for a hollow, before and after.
+    /// Appends a piece of the rolled path of which a part may be blocked; `left_at` is where the ball left it for a hollow, before and after.
     fn pass(
         &self,
         path: &mut SurfacePath,
         piece: &Piece,
+        blocked: Option<[f64; 2]>,
         left_at: &mut Option<Touch>,
         near: &mut Vec<u32>,
     ) -> bool {
-        let blocked = self.blocked(piece, SINK, near);
         if let Some(left) = left_at.as_ref().filter(|_| blocked.is_none_or(|[enter, _]| enter > 0.0)) {
             if !self.slide(path, left, &self.touch(piece.from), near) {
                 return false;
@@ -109,10 +123,6 @@ impl Follower<'_> {
         }
         self.advance(path, piece.to);
         true
-    }
-
-    fn tip(&self, p_OF: &Vec3, hint: u32) -> Projection {
-        self.closest.project(self.polyhedron, p_OF, Some(hint))
     }
 
     /// Appends the way of the ball between two places along the offset surface.
@@ -186,15 +196,15 @@ impl Follower<'_> {
         places.iter().all(|&t| {
             let contact = between(&a, &b, t);
             let p_OF = contact.tip_center(self.radius);
-            let tip = self.tip(&p_OF, contact.facet);
-            let is_there = |tip: &Projection| (tip.contact.p_OC - contact.p_OC).norm() < ASIDE * self.radius;
-            // In a concave edge the ball touches both sides: either is right.
-            let touches = |facet: u32| {
-                let other = closest_of_facet(self.polyhedron, &p_OF, facet);
-                other.distance < tip.distance + SLACK && is_there(&other)
-            };
-            (tip.distance - self.radius).abs() < STRAY
-                && (is_there(&tip) || touches(a.facet) || touches(b.facet))
+            // The ball touches one of the ends' facets where the contact says, and nothing else first; in a concave edge it
+            // touches both, and either is right.
+            let touched = [a.facet, b.facet].into_iter().filter_map(|facet| {
+                let tip = closest_of_facet(self.polyhedron, &p_OF, facet);
+                let is_there = (tip.contact.p_OC - contact.p_OC).norm() < ASIDE * self.radius;
+                (is_there && (tip.distance - self.radius).abs() < STRAY).then_some(tip.distance)
+            });
+            let least = touched.fold(f64::INFINITY, f64::min);
+            least.is_finite() && self.closest.is_clear(self.polyhedron, &p_OF, least - SLACK)
         })
     }
 

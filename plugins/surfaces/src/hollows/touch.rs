@@ -1,6 +1,6 @@
 //! Places where a ball touches: pushed out to the surface, in the corner of two facets, at a facet's edge.
 
-use super::{Follower, SAME, SINK};
+use super::{Follower, PARALLEL, SAME, SINK};
 use crate::closest::closest_of_facet;
 use regrasp_api::{Contact, Vec3};
 
@@ -8,8 +8,6 @@ use regrasp_api::{Contact, Vec3};
 const SETTLE_STEPS: usize = 60;
 /// Corrections before the contact's jump is looked for by bisection.
 const CORNER_STEPS: usize = 6;
-/// Directions (unit vectors) that differ by less are one.
-const PARALLEL: f64 = 1e-9;
 
 /// A ball that touches.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +79,7 @@ impl Follower<'_> {
             let off = (a.distance - self.radius).abs().max((b.distance - self.radius).abs());
             if off < SINK {
                 let near = (p_OF - from.p_OF).norm().max((p_OF - to.p_OF).norm()) < 1.5 * gap;
-                let clear = near && self.closest.is_clear(self.polyhedron, &p_OF, self.radius - SINK);
+                let clear = near && self.is_free(&a.contact, SINK);
                 let touch = |contact| Touch { p_OF, contact };
                 return clear.then(|| (touch(a.contact), touch(b.contact)));
             }
@@ -116,7 +114,7 @@ impl Follower<'_> {
         }
         let knee = self.touch(Contact { facet, p_OC: p_OC + flat * first, n_O: n });
         let is_new = |end: &Touch| (knee.p_OF - end.p_OF).norm() > SAME;
-        let is_free = || self.closest.is_clear(self.polyhedron, &knee.p_OF, self.radius - SINK);
+        let is_free = || self.is_free(&knee.contact, SINK);
         (first < 1.0 && is_new(inside) && is_new(outside) && is_free()).then_some(knee)
     }
 
