@@ -160,7 +160,7 @@ impl Follower<'_> {
         let steps = (piece.travel / self.step).ceil().max(1.0);
         let is_blocked = |&step: &usize| {
             let center = piece.at(step as f64 / steps).tip_center(self.radius);
-            self.deepest(&center, near).distance < self.radius - sink
+            self.is_hit(near, &center, self.radius - sink)
         };
         let mut places = 0..=steps as usize;
         let first = places.find(is_blocked)?;

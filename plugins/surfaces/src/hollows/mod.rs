@@ -127,8 +127,12 @@ impl Follower<'_> {
 
     /// Appends the way of the ball between two places along the offset surface.
     fn slide(&self, path: &mut SurfacePath, from: &Touch, to: &Touch, near: &mut Vec<u32>) -> bool {
+        if self.go_straight(path, (from, to), near).is_some() {
+            self.advance(path, to.contact);
+            return true;
+        }
         let mut budget = MOST_PLACES;
-        let steps = ((to.p_OF - from.p_OF).norm() / self.step).ceil().max(1.0);
+        let steps = ((to.p_OF - from.p_OF).norm() / (1.4 * self.step)).ceil().max(1.0);
         let mut before = *from;
         for step in 1..=steps as usize {
             let t = step as f64 / steps;
@@ -152,18 +156,9 @@ impl Follower<'_> {
         budget: &mut usize,
         near: &mut Vec<u32>,
     ) -> Option<Touch> {
-        let to = &self.keep(from, to);
         let gap = (to.p_OF - from.p_OF).norm();
-        if gap < SAME || self.is_direct(from, to, gap, near) {
-            self.advance(path, to.contact);
-            return Some(*to);
-        }
-        // The ball may touch what is ahead already.
-        let ahead = &self.keep(to, from);
-        if ahead.contact.facet != from.contact.facet && self.is_direct(ahead, to, gap, near) {
-            self.advance(path, ahead.contact);
-            self.advance(path, to.contact);
-            return Some(*to);
+        if let Some(reached) = self.go_straight(path, (from, to), near) {
+            return Some(reached);
         }
         // Halves of a continuous way get shorter and shorter; those of a leap do not.
         if *budget == 0 || gap > 16.0 * self.step * 0.7_f64.powi(depth) {
@@ -181,16 +176,37 @@ impl Follower<'_> {
         self.join(path, (&via, to), depth + 1, budget, near)
     }
 
+    /// Appends the straight way between two places if it stays on the offset surface; the touch at its end.
+    fn go_straight(
+        &self,
+        path: &mut SurfacePath,
+        (from, to): (&Touch, &Touch),
+        near: &mut Vec<u32>,
+    ) -> Option<Touch> {
+        let to = self.keep(from, to);
+        let gap = (to.p_OF - from.p_OF).norm();
+        if gap > SAME && !self.is_direct(from, &to, gap, near) {
+            // The ball may touch what is ahead already.
+            let ahead = self.keep(&to, from);
+            if ahead.contact.facet == from.contact.facet || !self.is_direct(&ahead, &to, gap, near) {
+                return None;
+            }
+            self.advance(path, ahead.contact);
+        }
+        self.advance(path, to.contact);
+        Some(to)
+    }
+
     /// Whether the contact may go straight from one place to the next.
     fn is_direct(&self, from: &Touch, to: &Touch, gap: f64, near: &mut Vec<u32>) -> bool {
-        if gap > 1.5 * self.step {
-            return false;
-        }
         let (a, b) = (from.contact, to.contact);
         if a.facet == b.facet && (a.n_O - b.n_O).norm_squared() < 1e-20 {
             // A straight line between two points of a facet stays in it.
             let piece = Piece { from: a, to: Contact { n_O: a.n_O, ..b }, travel: gap };
             return self.blocked(&piece, SLACK, near).is_none();
+        }
+        if gap > 1.5 * self.step {
+            return false;
         }
         let places: &[f64] = if gap > self.step / 2.0 { &[0.5, 0.25, 0.75] } else { &[0.5] };
         places.iter().all(|&t| {
