@@ -30,11 +30,10 @@ pub(crate) fn connect(
         return Ok(None);
     }
     let meeting = on_the_way(from, to, share(looks.map(|look| look.fraction)));
-    let Some((rolls, X_HO)) = approach(session, task, [from, to], &meeting, context)? else {
+    let Some((mut rolls, X_HO)) = approach(session, task, [from, to], &meeting, context)? else {
         return Ok(None);
     };
     let asides = [&from.X_HO, &to.X_HO].map(|end| interpolate(&X_HO, end, ASIDE));
-    let mut rolls = rolls;
     for place in [X_HO].into_iter().chain(asides.into_iter().filter(|aside| *aside != X_HO)) {
         if let Some(steps) = regrasp_at(session, task, &mut rolls, &place, context)? {
             return Ok(Some(steps));
@@ -101,4 +100,19 @@ fn regrasp_at(
     let mut all: Vec<_> = [first].into_iter().chain(regrasps).chain(back).collect();
     all.retain(|segment| segment.states.len() > 1);
     Ok(Some(all))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_meet_in_the_middle_of_what_both_see_or_at_the_end_that_is_seen() {
+        // Seen by both from 0.25 to 0.75; then by none from 0.25 to 0.5.
+        assert_eq!(share([0.75, 0.75]), 0.5);
+        assert_eq!(share([0.25, 0.5]), 0.375);
+        assert_eq!(share([1.0, 0.5]), 1.0);
+        assert_eq!(share([0.5, 1.0]), 0.0);
+        assert_eq!(share([1.0, 1.0]), 1.0);
+    }
 }
