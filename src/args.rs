@@ -22,6 +22,7 @@ pub enum Command {
     Verify(VerifyArgs),
     Compare(crate::compare::CompareArgs),
     Replay(crate::replay::ReplayArgs),
+    Hand(crate::hand::HandArgs),
     Plugins(PluginsArgs),
     Scenarios(ScenariosArgs),
     Schema(SchemaArgs),

@@ -5,6 +5,7 @@
 mod args;
 mod compare;
 mod failure;
+mod hand;
 mod new_plugin;
 mod overrides;
 mod plan;
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Command::Verify(args) => verify::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Replay(args) => replay::run(args),
+        Command::Hand(args) => hand::run(args),
         Command::Plugins(args) => plugins::run(args),
         Command::Scenarios(args) => scenarios::run(args),
         Command::Schema(args) => schema::run(args),

@@ -10,7 +10,8 @@ mod scene;
 pub use clearance::SceneClearance;
 pub use error::WorldError;
 pub use hand::{
-    ChainHand, HandError, LinkFrame, LinkFrames, UrdfError, UrdfHand, UrdfOptions, UrdfReport, read_urdf,
+    ChainHand, FingerWorkspace, HandError, LinkFrame, LinkFrames, ObjectPlace, UrdfError, UrdfHand,
+    UrdfOptions, UrdfReport, finger_workspace, object_place, read_urdf,
 };
 pub use mesh::{MAX_FACETS, load_mesh};
 pub use object::{load_object, primitive_mesh};

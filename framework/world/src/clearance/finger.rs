@@ -1,6 +1,8 @@
 //! A finger as bodies: its links' solids and the fingertip's ball.
 
+use super::block;
 use super::body::Placed;
+use super::convex::Verdict;
 use super::exact::{self, Solid};
 use super::fixed::Fixed;
 use super::object::ObjectBody;
@@ -159,25 +161,30 @@ impl FingerBodies {
             {
                 continue;
             }
-            if part.placed.is_rod() || !self.exactly_clear_of_object(placed, part, object, X_HO, clear) {
+            if part.placed.is_rod() || !self.solid_clear_of_object(placed, part, object, (X_HO, frame), clear)
+            {
                 return Err(ordered(part.body, Body::Object));
             }
         }
         Ok(())
     }
 
-    fn exactly_clear_of_object(
+    fn solid_clear_of_object(
         &self,
         placed: &PlacedFinger,
         part: &Part,
         object: &ObjectBody,
-        X_HO: &Pose,
+        (X_HO, frame): (&Pose, &LinkFrame),
         clear: f64,
     ) -> bool {
         let mut room = LinkFrame::room();
         let frames = self.hand.link_frames(self.finger, &placed.joints, &mut room);
         let X_HS = frames[part.link].pose() * part.placed.X_BS;
-        exact::distance(&part.placed.solid, &X_HS, &object.solid, X_HO) > clear
+        match block::verdict(&part.placed, &X_HS, object, frame, clear) {
+            Verdict::Free => true,
+            Verdict::Close => false,
+            Verdict::Unknown => exact::distance(&part.placed.solid, &X_HS, &object.solid, X_HO) > clear,
+        }
     }
 }
 

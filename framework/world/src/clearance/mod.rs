@@ -5,6 +5,7 @@
 //! the width of the object's faceting error) does parry3d decide. So the answers are exact: nothing free is refused
 //! because of a bound, and nothing close is passed.
 
+mod block;
 mod body;
 mod convex;
 mod exact;

@@ -43,10 +43,12 @@ mod inverse;
 mod reach;
 mod screw;
 mod urdf;
+mod workspace;
 
 pub use chain::{LinkFrame, LinkFrames};
 pub use error::HandError;
 pub use urdf::{UrdfError, UrdfHand, UrdfOptions, UrdfReport, read_urdf};
+pub use workspace::{FingerWorkspace, ObjectPlace, finger_workspace, object_place};
 
 use chain::FingerChain;
 use check::FingerPoses;

@@ -4,8 +4,8 @@ use crate::clearance::SceneClearance;
 use crate::hand::{ChainHand, HandError};
 use crate::{WorldError, primitive_mesh};
 use regrasp_api::{
-    BodyPair, Clearance, Configuration, FingerIndex, FingerJoints, Hand, HandDescription, ObjectModel, PerFinger, Pose,
-    Primitive, Random,
+    BodyPair, Clearance, Configuration, FingerIndex, FingerJoints, Hand, HandDescription, ObjectModel,
+    PerFinger, Pose, Primitive, Random,
 };
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -97,7 +97,10 @@ pub(super) fn parse(text: &str) -> Result<Model, Fault> {
     let root = document.root_element();
     if root.tag_name().name() != "robot" {
         let name = root.tag_name().name();
-        return Err(Fault::at(line(&root), format!("the outermost element is <{name}>, a URDF's is <robot>")));
+        return Err(Fault::at(
+            line(&root),
+            format!("the outermost element is <{name}>, a URDF's is <robot>"),
+        ));
     }
     let name = root.attribute("name").unwrap_or("hand").to_owned();
     let mut model = Model { name, links: Vec::new(), joints: Vec::new(), skipped: Vec::new() };
@@ -139,7 +142,8 @@ fn numbers<const N: usize>(element: &Element<'_>, name: &str) -> Result<Option<[
     let read = text.split_whitespace().map(|word| word.parse::<f64>().ok().filter(|x| x.is_finite()));
     let numbers: Option<Vec<f64>> = read.collect();
     numbers.and_then(|numbers| numbers.try_into().ok()).map(Some).ok_or_else(|| {
-        let (tag, count) = (element.tag_name().name(), if N == 1 { "one finite number" } else { "three finite numbers" });
+        let (tag, count) =
+            (element.tag_name().name(), if N == 1 { "one finite number" } else { "three finite numbers" });
         Fault::at(line(element), format!("<{tag} {name}=\"{text}\">: it must be {count}"))
     })
 }
@@ -160,7 +164,10 @@ fn positive(element: &Element<'_>, name: &str, value: f64) -> Result<f64, Fault>
         return Ok(value);
     }
     let tag = element.tag_name().name();
-    Err(Fault::at(line(element), format!("<{tag}>: `{name}` = {value} m is outside (0, 1000); lengths are in metres")))
+    Err(Fault::at(
+        line(element),
+        format!("<{tag}>: `{name}` = {value} m is outside (0, 1000); lengths are in metres"),
+    ))
 }
 
 /// The pose that `<origin>` gives; the identity where there is none.
@@ -214,7 +221,9 @@ fn geometry(shape: &Element<'_>) -> Result<Geometry, Fault> {
             Geometry::Box { size }
         }
         "sphere" => Geometry::Sphere { radius: length(shape, "radius")? },
-        "cylinder" => Geometry::Cylinder { radius: length(shape, "radius")?, length: length(shape, "length")? },
+        "cylinder" => {
+            Geometry::Cylinder { radius: length(shape, "radius")?, length: length(shape, "length")? }
+        }
         "capsule" => Geometry::Capsule { radius: length(shape, "radius")?, length: length(shape, "length")? },
         "mesh" => {
             let scale = numbers(shape, "scale")?.unwrap_or([1.0; 3]);
@@ -270,7 +279,10 @@ fn kind(element: &Element<'_>, name: &str) -> Result<Kind, Fault> {
         "floating" | "planar" | "spherical" => Kind::Other,
         other => {
             let known = "fixed, revolute, continuous, prismatic, floating, planar";
-            return Err(Fault::at(line(element), format!("joint `{name}`: `type` = \"{other}\" is none of {known}")));
+            return Err(Fault::at(
+                line(element),
+                format!("joint `{name}`: `type` = \"{other}\" is none of {known}"),
+            ));
         }
     })
 }

@@ -31,7 +31,10 @@ impl Fingers {
         let guessed = tips.is_empty();
         let tips = if guessed { guess(tree)? } else { named(tree, tips)? };
         if tips.len() > MAX_FINGERS {
-            let message = format!("{} fingertips, at most {MAX_FINGERS} are possible; name the ones to use", tips.len());
+            let message = format!(
+                "{} fingertips, at most {MAX_FINGERS} are possible; name the ones to use",
+                tips.len()
+            );
             return Err(Fault::of_file(message));
         }
         let palm = match palm {
@@ -118,7 +121,9 @@ fn chain(tree: &Tree<'_>, palm: usize, tip: usize) -> Result<Chain, Fault> {
     let path = tree.path(tip);
     let below = path.iter().position(|&joint| tree.parent(joint) == palm);
     let Some(start) = below else {
-        let message = format!("the fingertip `{tip_name}` does not hang on the palm `{palm_name}`; give another `palm`");
+        let message = format!(
+            "the fingertip `{tip_name}` does not hang on the palm `{palm_name}`; give another `palm`"
+        );
         return Err(Fault::at(tree.link_of(tip).line, message));
     };
     let path = path[start..].to_vec();
@@ -160,7 +165,9 @@ fn check_kind(joint: &Joint, tip: &str) -> Result<(), Fault> {
         )),
         Kind::Other => Err(Fault::at(
             line,
-            format!("joint `{name}` of the finger to `{tip}` is neither revolute nor fixed; fingers have revolute joints"),
+            format!(
+                "joint `{name}` of the finger to `{tip}` is neither revolute nor fixed; fingers have revolute joints"
+            ),
         )),
     }
 }
@@ -174,7 +181,9 @@ fn check_apart(tree: &Tree<'_>, chains: &[Chain]) -> Result<(), Fault> {
                 let message = format!(
                     "joint `{}` moves two fingers, to `{}` and to `{}`; fingers must be chains of their own from the palm: make the joint \
                      fixed, name other fingertips (`tips`), or a `palm` behind it",
-                    joint.name, tree.link_of(other.tip).name, tree.link_of(chain.tip).name
+                    joint.name,
+                    tree.link_of(other.tip).name,
+                    tree.link_of(chain.tip).name
                 );
                 return Err(Fault::at(joint.line, message));
             }

@@ -10,11 +10,14 @@ const GRID: f64 = 1e-6;
 
 /// The convex hull; `None` where the points have no volume.
 pub(super) fn hull(points: &[Vec3]) -> Option<Mesh> {
-    let mut rounded: Vec<[i64; 3]> = points.iter().map(|p| (p / GRID).map(|x| x.round() as i64).into()).collect();
+    let mut rounded: Vec<[i64; 3]> =
+        points.iter().map(|p| (p / GRID).map(|x| x.round() as i64).into()).collect();
     rounded.sort_unstable();
     rounded.dedup();
-    let points: Vec<Vector> =
-        rounded.iter().map(|p| Vector::new(p[0] as f64 * GRID, p[1] as f64 * GRID, p[2] as f64 * GRID)).collect();
+    let points: Vec<Vector> = rounded
+        .iter()
+        .map(|p| Vector::new(p[0] as f64 * GRID, p[1] as f64 * GRID, p[2] as f64 * GRID))
+        .collect();
     let (vertices, facets) = try_convex_hull(&points).ok()?;
     Mesh::new(vertices.iter().map(|v| Vec3::new(v.x, v.y, v.z)).collect(), facets).ok()
 }
@@ -68,7 +71,8 @@ mod tests {
     #[test]
     fn an_angle_iron_comes_apart_in_pieces_that_leave_its_corner_free() {
         let bar = |size: Vec3, center: Vec3| {
-            let mesh = crate::primitive_mesh(&regrasp_api::Primitive::Cuboid { half_size: size / 2.0 }, 12).unwrap();
+            let mesh =
+                crate::primitive_mesh(&regrasp_api::Primitive::Cuboid { half_size: size / 2.0 }, 12).unwrap();
             (mesh.vertices().iter().map(|v| v + center).collect::<Vec<_>>(), mesh.facets().to_vec())
         };
         let (mut vertices, mut facets) = bar(Vec3::new(0.06, 0.01, 0.01), Vec3::new(0.03, 0.0, 0.0));

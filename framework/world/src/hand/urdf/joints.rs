@@ -107,7 +107,8 @@ fn own_limits(joint: &Joint, limit: Option<Limit>, notes: &mut Vec<String>) -> R
     let (velocity, effort) = (need(limit.velocity, "velocity")?, need(limit.effort, "effort")?);
     for (what, value) in [("velocity", velocity), ("effort", effort)] {
         if value <= 0.0 {
-            let message = format!("joint `{name}`: `{what}` = {value} must be positive, or the joint could not move");
+            let message =
+                format!("joint `{name}`: `{what}` = {value} must be positive, or the joint could not move");
             return Err(Fault::at(limit.line, message));
         }
     }
@@ -121,12 +122,20 @@ fn own_limits(joint: &Joint, limit: Option<Limit>, notes: &mut Vec<String>) -> R
 }
 
 /// The limits of a driven joint for which the file gives none: those of its driver, multiplied.
-fn driven_limits(tree: &Tree<'_>, mimic: &Mimic, joint: &Joint, notes: &mut Vec<String>) -> Result<Limits, Fault> {
+fn driven_limits(
+    tree: &Tree<'_>,
+    mimic: &Mimic,
+    joint: &Joint,
+    notes: &mut Vec<String>,
+) -> Result<Limits, Fault> {
     let driver = tree.joint(tree.joint_named(&mimic.joint).expect("the driver was looked up before"));
     let of_driver = own_limits(driver, driver.limit, &mut Vec::new())?;
     let at = |q: f64| mimic.multiplier * q + mimic.offset;
     let (a, b) = (at(of_driver.lower), at(of_driver.upper));
-    notes.push(format!("joint `{}` has no limits of its own: those of `{}`, which drives it, are taken", joint.name, mimic.joint));
+    notes.push(format!(
+        "joint `{}` has no limits of its own: those of `{}`, which drives it, are taken",
+        joint.name, mimic.joint
+    ));
     let times = mimic.multiplier.abs().max(1e-3);
     Ok(Limits {
         lower: a.min(b) - 1e-9,
@@ -145,7 +154,8 @@ fn mimic(tree: &Tree<'_>, fingers: &Fingers, chain: &Chain, joint: &Joint) -> Re
         offset += multiplier * next.offset;
         multiplier *= next.multiplier;
         let Some(driver) = tree.joint_named(&next.joint) else {
-            let message = format!("joint `{}` mimics `{}`, which the file does not have", joint.name, next.joint);
+            let message =
+                format!("joint `{}` mimics `{}`, which the file does not have", joint.name, next.joint);
             return Err(Fault::at(next.line, message));
         };
         if !chain.moving.contains(&driver) {
@@ -161,7 +171,10 @@ fn mimic(tree: &Tree<'_>, fingers: &Fingers, chain: &Chain, joint: &Joint) -> Re
             None => return Ok(Some(Mimic { joint: next.joint.clone(), multiplier, offset })),
         }
     }
-    Err(Fault::at(first.line, format!("joint `{}` mimics a joint that in the end mimics it; remove one <mimic>", joint.name)))
+    Err(Fault::at(
+        first.line,
+        format!("joint `{}` mimics a joint that in the end mimics it; remove one <mimic>", joint.name),
+    ))
 }
 
 /// Narrows drivers whose range would push a driven joint beyond its limits.
@@ -177,7 +190,8 @@ fn narrow(
         if mimic.multiplier == 0.0 {
             continue;
         }
-        let driver = joints.iter_mut().find(|joint| joint.name == mimic.joint).expect("the driver is in the chain");
+        let driver =
+            joints.iter_mut().find(|joint| joint.name == mimic.joint).expect("the driver is in the chain");
         let wanted = ends.map(|end| (end - mimic.offset) / mimic.multiplier);
         let (low, high) = (wanted[0].min(wanted[1]), wanted[0].max(wanted[1]));
         if low > driver.lower + 1e-9 || high < driver.upper - 1e-9 {
@@ -189,7 +203,8 @@ fn narrow(
         }
         if driver.lower >= driver.upper {
             let line = tree.joint(chain.moving[driven]).line;
-            let message = format!("joint `{name}` cannot follow `{}` anywhere within its limits", driver.name);
+            let message =
+                format!("joint `{name}` cannot follow `{}` anywhere within its limits", driver.name);
             return Err(Fault::at(line, message));
         }
     }

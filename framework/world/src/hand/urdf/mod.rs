@@ -106,7 +106,8 @@ fn read(path: &Path) -> Result<String, String> {
     if size > MAX_BYTES {
         return Err(format!("{size} bytes are more than the largest allowed {MAX_BYTES}"));
     }
-    String::from_utf8(std::fs::read(path).map_err(unreadable)?).map_err(|_| "the file is not UTF-8 text".into())
+    String::from_utf8(std::fs::read(path).map_err(unreadable)?)
+        .map_err(|_| "the file is not UTF-8 text".into())
 }
 
 fn convert(path: &Path, text: &str, options: &UrdfOptions) -> Result<UrdfHand, Fault> {
@@ -203,7 +204,10 @@ impl Reader<'_> {
         self.report.tips_guessed = fingers.guessed;
         let count = (self.options.tip_offset.len(), fingers.chains.len());
         if count.0 > 1 && count.0 != count.1 {
-            let message = format!("`tip_offset` has {} entries; give one, or one for each of the {} fingers", count.0, count.1);
+            let message = format!(
+                "`tip_offset` has {} entries; give one, or one for each of the {} fingers",
+                count.0, count.1
+            );
             return Err(Fault::of_file(message));
         }
         let owned = self.owned()?;
@@ -256,7 +260,8 @@ impl Reader<'_> {
             if joint.kind != Kind::Fixed {
                 self.report.ignored.push(format!(
                     "everything above joint `{}`, which moves the palm: link `{}` and what hangs on it",
-                    joint.name, self.tree.link_of(link).name
+                    joint.name,
+                    self.tree.link_of(link).name
                 ));
                 return;
             }
@@ -276,9 +281,7 @@ impl Reader<'_> {
         let q = if range.0 <= range.1 { 0_f64.clamp(range.0, range.1) } else { 0.0 };
         self.report.ignored.push(format!("joint `{}` belongs to no finger: it is held at {q}", joint.name));
         match joint.kind {
-            Kind::Revolute | Kind::Continuous => {
-                joint.X_PJ * Rotation::from_scaled_axis(joint.axis * q)
-            }
+            Kind::Revolute | Kind::Continuous => joint.X_PJ * Rotation::from_scaled_axis(joint.axis * q),
             Kind::Prismatic => joint.X_PJ * nalgebra::Translation3::from(joint.axis * q),
             Kind::Fixed | Kind::Other => joint.X_PJ,
         }
@@ -301,8 +304,13 @@ impl Reader<'_> {
         }
         let tip = self.tip(finger, chain, &X_LTip, owned, &mut joints[last]);
         let rest = joints.iter().map(|joint| 0_f64.clamp(joint.lower, joint.upper)).collect();
-        let mut finger =
-            FingerDescription { name: self.finger_name(chain), base, joint: joints, tip: tip.center.into(), rest };
+        let mut finger = FingerDescription {
+            name: self.finger_name(chain),
+            base,
+            joint: joints,
+            tip: tip.center.into(),
+            rest,
+        };
         settle_rest(&mut finger);
         Ok(finger)
     }
@@ -318,8 +326,10 @@ impl Reader<'_> {
     ) -> Tip {
         let place = chain.moving.len() - 1;
         let last = || owned.iter().filter(|(owner, ..)| *owner == Owner::Finger(finger, place));
-        let own: Vec<Piece> =
-            last().filter(|(_, link, _)| *link == chain.tip).flat_map(|(.., pieces)| pieces.clone()).collect();
+        let own: Vec<Piece> = last()
+            .filter(|(_, link, _)| *link == chain.tip)
+            .flat_map(|(.., pieces)| pieces.clone())
+            .collect();
         let all: Vec<Piece> = last().flat_map(|(.., pieces)| pieces.clone()).collect();
         let has_own_link = chain.path.last() != chain.moving.last();
         let offset = match self.options.tip_offset[..] {

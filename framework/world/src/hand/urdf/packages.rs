@@ -33,9 +33,10 @@ impl Packages {
             let path = self.home.join(name.strip_prefix("file://").unwrap_or(name));
             return if path.is_file() { Ok(path) } else { Err(vec![path]) };
         };
-        let parts: Vec<&str> =
-            Path::new(rest).components().filter_map(normal).collect();
-        let ends = (0..parts.len().saturating_sub(1).max(1)).map(|skipped| parts[skipped..].iter().collect::<PathBuf>());
+        let parts: Option<Vec<&str>> = Path::new(rest).components().map(normal).collect();
+        let Some(parts) = parts else { return Err(vec![PathBuf::from(rest)]) };
+        let ends = (0..parts.len().saturating_sub(1).max(1))
+            .map(|skipped| parts[skipped..].iter().collect::<PathBuf>());
         let mut tried = Vec::new();
         for end in ends {
             for root in &self.roots {
@@ -76,9 +77,18 @@ mod tests {
         }
         let packages = Packages::new(&at("ws/my_hand/urdf/hand.urdf"), &[at("else")]);
         let found = |name: &str| packages.resolve(name).map(|path| path.canonicalize().unwrap());
-        assert_eq!(found("package://my_hand/meshes/a.stl"), Ok(at("ws/my_hand/meshes/a.stl").canonicalize().unwrap()));
-        assert_eq!(found("package://other/meshes/b.stl"), Ok(at("else/other/meshes/b.stl").canonicalize().unwrap()));
-        assert_eq!(found("package://renamed/meshes/a.stl"), Ok(at("ws/my_hand/meshes/a.stl").canonicalize().unwrap()));
+        assert_eq!(
+            found("package://my_hand/meshes/a.stl"),
+            Ok(at("ws/my_hand/meshes/a.stl").canonicalize().unwrap())
+        );
+        assert_eq!(
+            found("package://other/meshes/b.stl"),
+            Ok(at("else/other/meshes/b.stl").canonicalize().unwrap())
+        );
+        assert_eq!(
+            found("package://renamed/meshes/a.stl"),
+            Ok(at("ws/my_hand/meshes/a.stl").canonicalize().unwrap())
+        );
         assert_eq!(found("c.stl"), Ok(at("ws/my_hand/urdf/c.stl").canonicalize().unwrap()));
         assert!(found("../meshes/a.stl").is_ok(), "relative paths start at the URDF");
         let tried = packages.resolve("package://my_hand/meshes/none.stl").unwrap_err();

@@ -99,9 +99,7 @@ impl Shaper {
         let X = solid.X_LS;
         let one = |piece: Piece, what: &str| Ok((vec![piece], what.to_owned()));
         match &solid.geometry {
-            Geometry::Box { size } => {
-                one(Piece::cuboid(Vec3::from(*size) / 2.0, X), "a box")
-            }
+            Geometry::Box { size } => one(Piece::cuboid(Vec3::from(*size) / 2.0, X), "a box"),
             Geometry::Sphere { radius } => {
                 let piece = Piece::new(Shape::Sphere { radius: *radius }, X, &[Vec3::zeros()], *radius);
                 one(piece, "a ball")
@@ -130,15 +128,17 @@ impl Shaper {
             })?;
             let count = raw.0.len() as u32;
             if count == 0 || raw.1.iter().flatten().any(|&vertex| vertex >= count) {
-                let message = format!("the mesh `{}` has no facets, or names corners that it lacks", path.display());
+                let message =
+                    format!("the mesh `{}` has no facets, or names corners that it lacks", path.display());
                 return Err(Fault::at(solid.line, message));
             }
             self.read.insert(path.clone(), raw);
         }
         let (points, facets) = &self.read[&path];
         let points: Vec<Vec3> = points.iter().map(|p| p.component_mul(&scale)).collect();
-        if points.iter().any(|p| !(p.norm() < 1e3)) {
-            let message = format!("the mesh `{}` reaches beyond a kilometre; is a scale missing?", path.display());
+        if !points.iter().all(|p| p.norm() < 1e3) {
+            let message =
+                format!("the mesh `{}` reaches beyond a kilometre; is a scale missing?", path.display());
             return Err(Fault::at(solid.line, message));
         }
         let parts =
@@ -147,7 +147,12 @@ impl Shaper {
         let (pieces, what) = match (parts.len(), hull::hull(&points)) {
             (count @ 2.., _) => (parts, format!("{count} convex pieces of {file} ({} facets)", facets.len())),
             (_, Some(whole)) => (vec![whole], format!("the convex hull of {file} ({} facets)", facets.len())),
-            (_, None) => return Ok((vec![boxed(&points, &solid.X_LS)], format!("the box around {file}, which is flat"))),
+            (_, None) => {
+                return Ok((
+                    vec![boxed(&points, &solid.X_LS)],
+                    format!("the box around {file}, which is flat"),
+                ));
+            }
         };
         Ok((pieces.iter().map(|mesh| Piece::of_mesh(mesh).moved(&solid.X_LS)).collect(), what))
     }

@@ -3,7 +3,7 @@
 use super::document::{Geometry, Link};
 use super::hull;
 use super::solids::Piece;
-use regrasp_api::{Pose, Shape, Vec3};
+use regrasp_api::{Pose, Shape, Vec3, any_orthogonal};
 
 /// The clearance (m) that planning keeps by default: a link that is thinner than the ball by less touches the object beside the ball.
 const CLEARANCE: f64 = 5e-4;
@@ -51,14 +51,29 @@ impl Tip {
         {
             let center = piece.corners[0];
             let is_ball = has_own_link && piece.radius <= 1.25 * radius;
-            return Self { center, outward: outward(&center, all), how: "the centre of the tip link's ball".into(), is_ball };
+            return Self {
+                center,
+                outward: outward(&center, all),
+                how: "the centre of the tip link's ball".into(),
+                is_ball,
+            };
         }
         if own.is_empty() {
             let outward = outward(&origin, all);
-            return Self { center: origin, outward, how: "the origin of the tip link, which has no shape".into(), is_ball: false };
+            return Self {
+                center: origin,
+                outward,
+                how: "the origin of the tip link, which has no shape".into(),
+                is_ball: false,
+            };
         }
         let (center, outward) = fit(own, radius);
-        Self { center, outward, how: "fitted to the end of the tip link's shape".into(), is_ball: has_own_link && inside(own, &center, radius) }
+        Self {
+            center,
+            outward,
+            how: "fitted to the end of the tip link's shape".into(),
+            is_ball: has_own_link && inside(own, &center, radius),
+        }
     }
 
     /// What remains of the last link's shapes beside the ball: what lies beyond the ball's centre, where the finger ends there, is cut off.
@@ -72,26 +87,33 @@ impl Tip {
             ));
             return pieces;
         }
-        let kept: Vec<Piece> = pieces.into_iter().filter_map(|piece| below(piece, &self.outward, height)).collect();
-        let thick = self.thickness(&kept, radius);
-        if thick > radius - CLEARANCE {
+        let kept: Vec<Piece> =
+            pieces.into_iter().filter_map(|piece| below(piece, &self.outward, height)).collect();
+        let thin = self.thinnest(&kept, radius);
+        if thin > radius - CLEARANCE {
             notes.push(format!(
-                "the last link of `{name}` reaches {:.1} mm from its middle, the ball of its tip {:.1} mm: with the finger's sides it cannot \
-                 touch the object",
-                1e3 * thick, 1e3 * radius
+                "the last link of `{name}` reaches {:.1} mm from its middle, the ball of its tip {:.1} mm: the sides of the finger touch an \
+                 object before the ball does; a larger `fingertip_radius` helps",
+                1e3 * thin,
+                1e3 * radius
             ));
         }
         kept
     }
 
-    /// How far (m) the link reaches from the line through the ball's centre, near the ball.
-    fn thickness(&self, pieces: &[Piece], radius: f64) -> f64 {
-        let aside = |p: &Vec3| {
-            let d = p - self.center;
-            (d.dot(&self.outward), (d - self.outward * d.dot(&self.outward)).norm())
+    /// How far (m) the link reaches from the ball's centre, near the ball, in the direction across the finger in which it is thinnest.
+    fn thinnest(&self, pieces: &[Piece], radius: f64) -> f64 {
+        let near = |p: &&Vec3| (*p - self.center).dot(&self.outward).abs() < radius;
+        let corners =
+            || pieces.iter().flat_map(|piece| piece.corners.iter().filter(near).map(|p| (p, piece.radius)));
+        let across = any_orthogonal(&self.outward);
+        let other = self.outward.cross(&across);
+        let reach = |i: usize| {
+            let (sin, cos) = (i as f64 * std::f64::consts::TAU / 16.0).sin_cos();
+            let n = across * cos + other * sin;
+            corners().map(|(p, radius)| n.dot(&(p - self.center)) + radius).fold(0.0, f64::max)
         };
-        let near = pieces.iter().flat_map(|piece| piece.corners.iter().map(|p| (aside(p), piece.radius)));
-        near.filter(|((along, _), _)| along.abs() < radius).map(|((_, aside), r)| aside + r).fold(0.0, f64::max)
+        (0..16).map(reach).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -127,7 +149,8 @@ fn fit(own: &[Piece], radius: f64) -> (Vec3, Vec3) {
 
 /// Whether the shapes are no more than the ball, to a quarter of its radius.
 fn inside(own: &[Piece], center: &Vec3, radius: f64) -> bool {
-    let far = |piece: &Piece| piece.corners.iter().map(|p| (p - center).norm() + piece.radius).fold(0.0, f64::max);
+    let far =
+        |piece: &Piece| piece.corners.iter().map(|p| (p - center).norm() + piece.radius).fold(0.0, f64::max);
     own.iter().all(|piece| far(piece) <= 1.25 * radius)
 }
 

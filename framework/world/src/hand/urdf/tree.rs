@@ -31,7 +31,8 @@ impl<'m> Tree<'m> {
         let mut ends = Vec::new();
         for (j, joint) in model.joints.iter().enumerate() {
             let [parent, child] = [&joint.parent, &joint.child].map(|name| {
-                let message = format!("joint `{}` names the link `{name}`, which the file does not have", joint.name);
+                let message =
+                    format!("joint `{}` names the link `{name}`, which the file does not have", joint.name);
                 links.get(name.as_str()).copied().ok_or(Fault::at(joint.line, message))
             });
             let (parent, child) = (parent?, child?);
@@ -54,7 +55,9 @@ impl<'m> Tree<'m> {
             let all: Vec<String> = roots.iter().map(|&root| name(root)).collect();
             let message = format!(
                 "the links {} hang on no joint: a robot has one root; join {} to {} by a fixed joint, or remove it",
-                all.join(", "), name(second), name(first)
+                all.join(", "),
+                name(second),
+                name(first)
             );
             return Err(Fault::at(self.model.links[second].line, message));
         }
@@ -70,7 +73,8 @@ impl<'m> Tree<'m> {
                 let joint = &self.model.joints[self.above[link].expect("only the root has none")];
                 let message = format!(
                     "the joints form a loop through joint `{}` and link {}; a URDF is a tree: remove one joint of the loop",
-                    joint.name, name(link)
+                    joint.name,
+                    name(link)
                 );
                 Err(Fault::at(joint.line, message))
             }

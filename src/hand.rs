@@ -1,0 +1,241 @@
+//! `regrasp hand`: how a URDF is understood, and the hand file that it becomes.
+
+use crate::table::Table;
+use crate::{Failure, say, say_json};
+use clap::Args;
+use regrasp::api::{FingerIndex, Hand, HandDescription, JointDescription, Vec3};
+use regrasp::world::{
+    ChainHand, FingerWorkspace, ObjectPlace, UrdfHand, UrdfOptions, UrdfReport, finger_workspace,
+    object_place, read_urdf,
+};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// Show how a hand's URDF is understood: fingers, joints, limits, reach, shapes, and what is ignored.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A scenario uses the URDF itself (`[hand] urdf = \"my-hand.urdf\"`, with keys of the same names as the options here) or the hand file that \
+`-o` writes (`[hand] file = \"my-hand.toml\"`), which can be edited. The position that is proposed for an object is a place to start from: \
+`regrasp plan` tells whether it is a good one.\n\n\
+Examples:\n  regrasp hand my-hand.urdf\n  regrasp hand my-hand.urdf --tips thumb_tip,index_tip,middle_tip,ring_tip --fingertip-radius 0.012\n  \
+regrasp hand my-hand.urdf --packages ~/ros/src -o my-hand.toml")]
+pub struct HandArgs {
+    /// A URDF file.
+    pub file: PathBuf,
+    /// The fingertip links, one a finger, in the order in which the fingers are counted; guessed where absent.
+    #[arg(long, value_name = "LINK,…", value_delimiter = ',')]
+    pub tips: Vec<String>,
+    /// Radius of the balls that stand for the fingertips (m); where absent, that of the tip links' own balls.
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub fingertip_radius: Option<f64>,
+    /// Centre of these balls in the frames of the tip links (m), given once or once for each finger; where absent, they are fitted.
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub tip_offset: Vec<Vec3>,
+    /// The link whose frame is the hand's; where absent, the last one that all fingertips hang on.
+    #[arg(long, value_name = "LINK")]
+    pub palm: Option<String>,
+    /// A folder that holds packages of `package://` paths; can be repeated.
+    #[arg(long, value_name = "DIR")]
+    pub packages: Vec<PathBuf>,
+    /// Take each mesh apart into at most this many convex pieces; by default its convex hull is used.
+    #[arg(long, value_name = "N")]
+    pub mesh_pieces: Option<usize>,
+    /// Largest acceleration of every joint (rad/s²); by default what the URDF says, or else 20.
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    pub acceleration: Option<f64>,
+    /// Propose a position for a ball of this radius (m).
+    #[arg(long, value_name = "M", default_value_t = 0.03, value_parser = radius)]
+    pub ball: f64,
+    /// Write the hand file, with all meshes in it.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn point(text: &str) -> Result<Vec3, String> {
+    let read: Option<Vec<f64>> = text.split(',').map(|x| x.trim().parse::<f64>().ok()).collect();
+    let numbers: Option<[f64; 3]> = read.and_then(|numbers| numbers.try_into().ok());
+    numbers.map(Vec3::from).ok_or_else(|| "it must be three numbers such as 0,0,0.01".into())
+}
+
+fn radius(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(radius) if (1e-3..=1.0).contains(&radius) => Ok(radius),
+        _ => Err("it must be a number of metres in 0.001..=1".into()),
+    }
+}
+
+pub fn run(args: &HandArgs) -> Result<(), Failure> {
+    args.output.as_deref().map_or(Ok(()), regrasp::plan::check_place).map_err(Failure::bad_input)?;
+    let options = UrdfOptions {
+        tips: args.tips.clone(),
+        fingertip_radius: args.fingertip_radius,
+        tip_offset: args.tip_offset.iter().map(|&offset| offset.into()).collect(),
+        palm: args.palm.clone(),
+        packages: args.packages.clone(),
+        mesh_pieces: args.mesh_pieces,
+        acceleration: args.acceleration,
+    };
+    let UrdfHand { description, report } = read_urdf(&args.file, &options).map_err(Failure::bad_input)?;
+    let hand = ChainHand::new(description).map_err(Failure::bad_input)?;
+    if let Some(path) = &args.output {
+        write(path, hand.description())?;
+    }
+    let understood = Understood {
+        hand: &hand,
+        report: &report,
+        reach: fingers(&hand).map(|finger| finger_workspace(&hand, finger)).collect(),
+        place: object_place(&hand, args.ball),
+        ball: args.ball,
+    };
+    if args.json { say_json(&understood.json()) } else { say(&understood.text(args.output.as_deref())) }
+}
+
+fn fingers(hand: &ChainHand) -> impl Iterator<Item = FingerIndex> + use<> {
+    (0..hand.finger_count() as u8).map(FingerIndex)
+}
+
+fn write(path: &Path, hand: &HandDescription) -> Result<(), Failure> {
+    let text = toml::to_string(hand).map_err(Failure::bad_input)?;
+    regrasp::plan::write_file(path, |out| out.write_all(text.as_bytes())).map_err(Failure::bad_input)
+}
+
+/// A hand and everything that is told about it.
+struct Understood<'a> {
+    hand: &'a ChainHand,
+    report: &'a UrdfReport,
+    reach: Vec<FingerWorkspace>,
+    place: Option<ObjectPlace>,
+    ball: f64,
+}
+
+impl Understood<'_> {
+    fn json(&self) -> Value {
+        let description = self.hand.description();
+        let finger = |(index, reach): (FingerIndex, &FingerWorkspace)| {
+            let model = self.hand.finger(index);
+            json!({
+                "name": model.name,
+                "tip_link": self.report.tips[index.index()],
+                "closed_form": self.hand.is_closed_form(index),
+                "spare_joints": model.spare.iter().map(|&joint| &model.joints[joint].name).collect::<Vec<_>>(),
+                "reach": { "lower": reach.lower.as_slice(), "upper": reach.upper.as_slice(), "volume": reach.volume },
+            })
+        };
+        json!({
+            "hand": description,
+            "fingers": fingers(self.hand).zip(&self.reach).map(finger).collect::<Vec<_>>(),
+            "object_place": self.place.as_ref().map(|place| json!({
+                "ball_radius": self.ball, "position": place.p_HO.as_slice(), "quality": place.quality,
+            })),
+            "report": self.report,
+        })
+    }
+
+    fn text(&self, written: Option<&Path>) -> String {
+        let description = self.hand.description();
+        let joints: usize = description.finger.iter().map(|finger| finger.joint.len()).sum();
+        let mut text = format!(
+            "{}: {} fingers, {joints} joints, fingertips of {:.1} mm radius; the hand's frame is that of link `{}`\n",
+            description.name,
+            description.finger.len(),
+            1e3 * description.fingertip_radius,
+            self.report.palm,
+        );
+        let how = if self.report.tips_guessed { "guessed; `--tips` chooses others" } else { "as given" };
+        text += &format!("\nfingers ({how}; boxes of their tips' centres in mm)\n{}", self.finger_table());
+        text += &format!("\njoints (degrees, rad/s, rad/s², N·m)\n{}", self.joint_table());
+        text += &listed("fingertips' centres", &self.report.tip_centers);
+        text += &listed("collision shapes", &self.report.shapes);
+        let pairs: Vec<String> =
+            self.report.touching.iter().map(|[a, b]| format!("`{a}` and `{b}`")).collect();
+        text += &listed("pairs that always touch, excluded (beside neighbours)", &pairs);
+        let often = |([a, b], share): &([String; 2], f64)| {
+            format!("`{a}` and `{b}` in {:.0} % of the postures: not excluded", 100.0 * share)
+        };
+        let often: Vec<String> = self.report.often_touching.iter().map(often).collect();
+        text += &listed("pairs that touch often", &often);
+        text += &listed("ignored", &self.report.ignored);
+        text += &listed("notes", &self.report.notes);
+        text += &self.proposal();
+        text + &written.map(|path| format!("\nwritten to {}\n", path.display())).unwrap_or_default()
+    }
+
+    fn finger_table(&self) -> String {
+        let mut table = Table::new("<<<<", &["finger", "joints", "inverse kinematics", "reach", "volume"]);
+        for (index, reach) in fingers(self.hand).zip(&self.reach) {
+            let model = self.hand.finger(index);
+            let driven =
+                self.hand.description().finger[index.index()].joint.iter().filter(|j| j.mimic.is_some());
+            let spare: Vec<&str> =
+                model.spare.iter().map(|&joint| model.joints[joint].name.as_str()).collect();
+            let mut joints = model.joints.len().to_string();
+            if !spare.is_empty() {
+                joints += &format!(", spare {}", spare.join(" "));
+            }
+            match driven.count() {
+                0 => {}
+                count => joints += &format!(", driven {count}"),
+            }
+            let axis = |k: usize| format!("{:.0}..{:.0}", 1e3 * reach.lower[k], 1e3 * reach.upper[k]);
+            table.row([
+                model.name.clone(),
+                joints,
+                if self.hand.is_closed_form(index) { "closed form" } else { "numeric" }.into(),
+                format!("x {} y {} z {}", axis(0), axis(1), axis(2)),
+                format!("{:.0} cm³", 1e6 * reach.volume),
+            ]);
+        }
+        table.text()
+    }
+
+    fn joint_table(&self) -> String {
+        let head = ["joint", "finger", "from", "to", "velocity", "acceleration", "effort", "driven by"];
+        let mut table = Table::new("<<>>>>><", &head);
+        for finger in &self.hand.description().finger {
+            for joint in &finger.joint {
+                table.row([
+                    joint.name.clone(),
+                    finger.name.clone(),
+                    format!("{:.1}", joint.lower.to_degrees()),
+                    format!("{:.1}", joint.upper.to_degrees()),
+                    joint.velocity.to_string(),
+                    joint.acceleration.to_string(),
+                    joint.effort.to_string(),
+                    driver(joint),
+                ]);
+            }
+        }
+        table.text()
+    }
+
+    fn proposal(&self) -> String {
+        let diameter = 2e3 * self.ball;
+        match &self.place {
+            Some(ObjectPlace { p_HO, quality }) => format!(
+                "\nthe fingertips surround a ball of {diameter:.0} mm best at\n  position = [{:.3}, {:.3}, {:.3}]   (quality {quality:.2} of 1)\n",
+                p_HO.x, p_HO.y, p_HO.z
+            ),
+            None => format!(
+                "\nno place was found at which all fingertips reach a ball of {diameter:.0} mm (`--ball`)\n"
+            ),
+        }
+    }
+}
+
+fn driver(joint: &JointDescription) -> String {
+    let say =
+        |mimic: &regrasp::api::Mimic| format!("{} × {} + {}", mimic.multiplier, mimic.joint, mimic.offset);
+    joint.mimic.as_ref().map(say).unwrap_or_default()
+}
+
+/// A heading and its lines; nothing where there are none.
+fn listed(heading: &str, lines: &[String]) -> String {
+    if lines.is_empty() {
+        return String::new();
+    }
+    let lines: String = lines.iter().map(|line| format!("  {line}\n")).collect();
+    format!("\n{heading}\n{lines}")
+}
