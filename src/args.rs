@@ -21,6 +21,7 @@ pub enum Command {
     Plan(PlanArgs),
     Verify(VerifyArgs),
     Compare(crate::compare::CompareArgs),
+    View(crate::view::ViewArgs),
     Replay(crate::replay::ReplayArgs),
     Hand(crate::hand::HandArgs),
     Plugins(PluginsArgs),
@@ -62,6 +63,10 @@ pub struct PlanArgs {
     /// Write the plan to this file.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Write a page that plays the plan, beside the plan file or to a temporary place, and open it in the browser.
+    pub view: bool,
+    /// The same with the manipulation graph: what was tried, failed, found and used; also where there is no plan.
+    pub view_graph: bool,
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub json: bool,

@@ -32,6 +32,7 @@ pub use regrasp_plan as plan;
 pub use regrasp_planner as planner;
 pub use regrasp_study as study;
 pub use regrasp_verify as verify;
+pub use regrasp_view as view;
 pub use regrasp_world as world;
 
 // A dependency alone registers nothing: naming the crates links them, and with them their entries.

@@ -17,6 +17,7 @@ mod scenarios;
 mod schema;
 mod table;
 mod verify;
+mod view;
 mod watch;
 
 use args::{Arguments, Command};
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Command::Plan(args) => plan::run(args),
         Command::Verify(args) => verify::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::View(args) => view::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Hand(args) => hand::run(args),
         Command::Plugins(args) => plugins::run(args),

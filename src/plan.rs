@@ -3,7 +3,7 @@
 use crate::args::PlanArgs;
 use crate::progress::Line;
 use crate::watch::Watch;
-use crate::{Failure, export, overrides, plugins, report, say, say_json};
+use crate::{Failure, export, overrides, plugins, report, say, say_json, view};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
 use regrasp::study::{Run, RunOptions, Setup, scenario};
@@ -46,6 +46,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
             say(&report::rejections(&ran.outcome.statistics))?;
         }
     }
+    view::show_run(args, &setup, &ran, saved.as_deref())?;
     ending(&ran, &summary)
 }
 

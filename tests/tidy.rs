@@ -14,6 +14,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-host", &["regrasp-api"]),
     ("regrasp-planner", &["regrasp-api", "regrasp-plan"]),
     ("regrasp-verify", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
+    ("regrasp-view", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
     ("regrasp-conformance", &["regrasp-api", "regrasp-world"]),
     ("regrasp-physics", &["regrasp-api", "regrasp-world"]),
 ];

@@ -63,7 +63,8 @@ pub fn records(motion: &Motion, hand: &dyn Hand) -> Result<Vec<SegmentRecord>, C
     motion.segments.iter().enumerate().map(one).collect()
 }
 
-fn state_record(q: &Configuration, time: f64, hand: &dyn Hand) -> StateRecord {
+/// The file's form of one configuration at a time (s).
+pub fn state_record(q: &Configuration, time: f64, hand: &dyn Hand) -> StateRecord {
     let orientation = q.X_HO.rotation.quaternion();
     let contact = |(finger, contact): (FingerIndex, &Option<Contact>)| {
         contact.map(|contact| {

@@ -26,7 +26,8 @@ export function shapeMesh(shape, material, extent) {
         const n = unit(shape.normal);
         place(mesh, { p: scale(n, shape.offset), q: fromZ(n) });
     }
-    mesh.castShadow = shape.kind !== "half-space";
+    group.userData.endless = shape.kind === "half-space";
+    mesh.castShadow = !group.userData.endless;
     mesh.receiveShadow = true;
     group.add(mesh);
     return group;

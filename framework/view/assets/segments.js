@@ -22,7 +22,7 @@ export function segmentDetail(motion, segment) {
     const seconds = `${(segment.end - segment.start).toFixed(2)} s`;
     if (segment.kind === "transfer") {
         const [a, b] = [states.object(segment.first), states.object(segment.last)];
-        return `object turns ${degrees(angleBetween(a.q, b.q))}, moves ${millimetres(norm(sub(b.p, a.p)))} · ${seconds}`;
+        return `turns ${degrees(angleBetween(a.q, b.q))}, moves ${millimetres(norm(sub(b.p, a.p)))} · ${seconds}`;
     }
     const [a, b] = [states.contact(segment.first, segment.finger), states.contact(segment.last, segment.finger)];
     if (a && b) return `contact moves ${millimetres(norm(sub(b.point, a.point)))} · ${seconds}`;

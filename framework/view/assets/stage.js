@@ -134,7 +134,8 @@ export class Stage {
         if (this.motion.states.count) this.show(this.motion.at(this.motion.begin));
         this.scene.updateMatrixWorld(true);
         const box = new THREE.Box3();
-        [...this.fingers.flatMap((finger) => finger.links), this.body].forEach((part) => box.expandByObject(part));
+        const palm = this.still.children.filter((part) => !part.userData.endless);
+        [...this.fingers.flatMap((finger) => finger.links), this.body, ...palm].forEach((part) => box.expandByObject(part));
         const sphere = box.getBoundingSphere(new THREE.Sphere());
         [this.center, this.radius] = [sphere.center, Math.max(sphere.radius, 1e-3)];
         this.floor = box.min.z;

@@ -211,7 +211,8 @@ impl<'a> Setup<'a> {
         solve(&request).map_err(|error| RunError::of_planner(self.scenario, error))
     }
 
-    fn hand(&self) -> &dyn Hand {
+    /// The hand.
+    pub fn hand(&self) -> &dyn Hand {
         self.scenario.hand.as_ref()
     }
 }

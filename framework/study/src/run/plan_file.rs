@@ -10,7 +10,8 @@ use regrasp_planner::Outcome;
 use serde_json::Value;
 
 impl Setup<'_> {
-    pub(super) fn plan_file(
+    /// The plan file of an outcome, without a certificate; without segments where no goal was reached.
+    pub fn plan_file(
         &self,
         outcome: &Outcome,
         seed: u64,

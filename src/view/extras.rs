@@ -1,0 +1,89 @@
+//! What a page shows beside the plan itself.
+
+use crate::verify::place_text;
+use regrasp::api::{BodyPair, EdgeKind, Hand, NodeId, Problem};
+use regrasp::plan::{Criterion, Plan, state_record};
+use regrasp::planner::{EdgeRecord, End, Fate, GraphRecord};
+use regrasp::verify::{Check, StateFigures};
+use regrasp::view::{CheckRow, Extras, GraphEdge, GraphNode, GraphPicture, StateCurves};
+
+/// What the verifier knows of a plan.
+pub fn of_plan(plan: &Plan) -> Extras {
+    let problem = &plan.scenario.problem;
+    let verdict = regrasp::verify::verify(plan);
+    Extras {
+        checks: verdict.checks.iter().map(|check| check_row(check, problem)).collect(),
+        // A plan without sense has no figures; its failed checks say why.
+        curves: regrasp::verify::series(plan).ok().map(|figures| curves(plan, &figures.concat())),
+        ..Extras::default()
+    }
+}
+
+fn check_row(check: &Check, problem: &Problem) -> CheckRow {
+    CheckRow {
+        name: check.name.into(),
+        ok: check.ok,
+        worst: check.worst,
+        limit: check.limit,
+        unit: check.unit.into(),
+        place: place_text(&check.place, problem),
+        time: check.place.time,
+    }
+}
+
+fn curves(plan: &Plan, figures: &[StateFigures]) -> StateCurves {
+    let problem = &plan.scenario.problem;
+    let pair = |(a, b): BodyPair| format!("{} and {}", problem.name_of(a), problem.name_of(b));
+    let pair_of = |figure: &StateFigures| figure.clearance.map_or(String::new(), |(_, bodies)| pair(bodies));
+    StateCurves {
+        margin: figures.iter().map(|figure| figure.margin).collect(),
+        margin_name: match plan.claims.criterion {
+            Criterion::Closure => "Closure margin".into(),
+            _ => "Room to hold the load".into(),
+        },
+        clearance: figures.iter().map(|figure| figure.clearance.map(|(distance, _)| distance)).collect(),
+        clearance_pair: figures.iter().map(pair_of).collect(),
+    }
+}
+
+/// The manipulation graph of a run.
+pub fn graph(record: &GraphRecord, hand: &dyn Hand) -> GraphPicture {
+    let ends = record.ends();
+    let end = |node| ends.iter().find(|(_, other)| *other == node).map(|(end, _)| end_name(*end));
+    let nodes = record.nodes().iter().enumerate();
+    GraphPicture {
+        nodes: nodes
+            .map(|(index, q)| {
+                let node = NodeId(index as u32);
+                let component = record.component(node).0 as usize;
+                GraphNode { state: state_record(q, 0.0, hand), component, end: end(node) }
+            })
+            .collect(),
+        edges: record.edges().iter().map(graph_edge).collect(),
+    }
+}
+
+fn end_name(end: End) -> String {
+    match end {
+        End::Start => "start".into(),
+        End::Goal(index) => format!("goal {index}"),
+    }
+}
+
+fn graph_edge(edge: &EdgeRecord) -> GraphEdge {
+    GraphEdge {
+        from: edge.from.0 as usize,
+        to: edge.to.0 as usize,
+        kind: match edge.kind {
+            EdgeKind::Grasp => "grasp",
+            EdgeKind::TransferRegrasp => "transfer-regrasp",
+        },
+        fate: match edge.fate {
+            Fate::Failed => "failed",
+            Fate::Unchecked => "unchecked",
+            Fate::Valid => "valid",
+            Fate::Executable => "executable",
+            Fate::Used => "used",
+        },
+    }
+}
