@@ -64,8 +64,10 @@ pub struct PlanArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Write a page that plays the plan, beside the plan file or to a temporary place, and open it in the browser.
+    #[arg(long)]
     pub view: bool,
     /// The same with the manipulation graph: what was tried, failed, found and used; also where there is no plan.
+    #[arg(long)]
     pub view_graph: bool,
     /// Print one JSON object instead of text.
     #[arg(long)]

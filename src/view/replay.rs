@@ -23,7 +23,7 @@ struct Replay {
 
 #[derive(Deserialize)]
 struct Segment {
-    /// The object at each of the plan's states; absent from what `replay --json` prints.
+    /// The object at each of the plan's states, and in the end once more, when it has come to rest; absent from what `replay --json` prints.
     object: Option<Vec<Moment>>,
 }
 
@@ -52,7 +52,7 @@ fn track(replay: &Replay, plan: &Plan) -> Result<ReplayTrack, String> {
         ));
     }
     let fits = |(simulated, planned): (&Segment, &regrasp::plan::SegmentRecord)| {
-        simulated.object.as_ref().is_none_or(|object| object.len() <= planned.states.len())
+        simulated.object.as_ref().is_none_or(|object| object.len() <= planned.states.len() + 1)
     };
     let same_plan = replay.scenario == plan.scenario.name
         && replay.seed == plan.seed
@@ -64,9 +64,11 @@ fn track(replay: &Replay, plan: &Plan) -> Result<ReplayTrack, String> {
     let mut track = ReplayTrack { caption: caption(replay), ..ReplayTrack::default() };
     for (simulated, planned) in replay.segments.iter().zip(&plan.segments) {
         let object = simulated.object.as_ref().ok_or("holds no poses")?;
-        for (moment, state) in object.iter().zip(&planned.states) {
+        let times = planned.states.iter().map(|state| state.time);
+        let rest = planned.states.last().map(|state| state.time);
+        for (moment, time) in object.iter().zip(times.chain(rest)) {
             let ([x, y, z], [w, i, j, k]) = (moment.position, moment.orientation);
-            track.times.push(state.time);
+            track.times.push(time);
             track.poses.push([x, y, z, w, i, j, k]);
         }
     }

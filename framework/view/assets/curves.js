@@ -110,7 +110,7 @@ export function curves(parent, data, motion, player) {
     }
     if (some(clearance)) {
         const digits = (x) => `${(x * 1000).toFixed(2)} mm`;
-        const note = (state) => pairs[pair[state]];
+        const note = (state) => pairs[pair[state]].replaceAll("`", "");
         list.push(new Curve(parent, motion, player, { name: "Clearance", values: clearance, digits, note }));
     }
     return list;

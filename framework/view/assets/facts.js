@@ -46,9 +46,10 @@ export function facts(parent, data, motion, player) {
 function verdict(checks, player) {
     const body = element("tbody");
     for (const check of checks) {
+        const where = check.place.replaceAll("`", "");
         const place = check.time === null
-            ? element("span", { text: check.place })
-            : element("button", { type: "button", class: "link", text: check.place, onclick: () => player.seek(check.time) });
+            ? element("span", { text: where })
+            : element("button", { type: "button", class: "link", text: where, onclick: () => player.seek(check.time) });
         body.append(
             element(
                 "tr",

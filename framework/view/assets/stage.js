@@ -43,7 +43,7 @@ export class Stage {
 
     build(data) {
         const size = data.hand.tip_radius;
-        const neutral = new THREE.MeshStandardMaterial({ color: "#aeb4bd", roughness: 0.6, metalness: 0.1 });
+        const neutral = new THREE.MeshStandardMaterial({ color: "#98a0ab", roughness: 0.65, metalness: 0.1 });
         const rough = new THREE.MeshStandardMaterial({ color: "#8d7f6d", roughness: 0.9, transparent: true, opacity: 0.85 });
         const wide = Math.max(...data.hand.fingers.map((finger) => norm(finger.base))) * 4 + 8 * size;
         this.still = new THREE.Group();
@@ -138,11 +138,12 @@ export class Stage {
         [...this.fingers.flatMap((finger) => finger.links), this.body, ...palm].forEach((part) => box.expandByObject(part));
         const sphere = box.getBoundingSphere(new THREE.Sphere());
         [this.center, this.radius] = [sphere.center, Math.max(sphere.radius, 1e-3)];
+        this.center.z -= this.radius * 0.05;
         this.floor = box.min.z;
         const away = new THREE.Vector3(0.78, -0.95, 0.62).normalize();
         this.camera.near = this.radius / 100;
         this.camera.far = this.radius * 60;
-        this.home = this.center.clone().addScaledVector(away, (this.radius * 0.92) / Math.sin((16 * Math.PI) / 180));
+        this.home = this.center.clone().addScaledVector(away, (this.radius * 0.96) / Math.sin((16 * Math.PI) / 180));
         this.camera.position.copy(this.home);
     }
 
