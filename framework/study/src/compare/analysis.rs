@@ -178,3 +178,32 @@ fn compare_with_baseline(row: &mut [Cell<'_>]) {
         cell.compared = Some(Compared { paired, time_p, solved_p });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::RunKey;
+    use crate::compare::fixture::{runs, study};
+
+    #[test]
+    fn figures_are_found_where_they_are_kept() {
+        assert!(Figure::ALL.into_iter().enumerate().all(|(k, figure)| figure as usize == k));
+        let study = study(&["rlg"]);
+        let records = runs(&study, |_| Some(0.25));
+        let rows = analyse(&study, &records);
+        let median = |figure| rows[0][0].median(figure).map(|found| found.value);
+        assert_eq!(median(Figure::Planning), Some(0.25));
+        assert_eq!((median(Figure::Regrasps), median(Figure::Transfers)), (Some(3.0), Some(4.0)));
+        assert_eq!((median(Figure::Margin), median(Figure::Clearance)), (Some(0.1), None));
+    }
+
+    #[test]
+    fn who_fails_is_not_fast() {
+        let study = study(&["rlg", "five of twelve", "six of twelve", "seven of twelve"]);
+        let solved = |key: RunKey| [12, 5, 6, 7][key.variant] > key.seed;
+        let records = runs(&study, |key| solved(key).then_some(1.0 + key.seed as f64));
+        let rows = analyse(&study, &records);
+        let medians: Vec<f64> = rows[0].iter().map(Cell::median_of_all_s).collect();
+        assert_eq!(medians, [6.5, f64::INFINITY, f64::INFINITY, 6.5]);
+    }
+}

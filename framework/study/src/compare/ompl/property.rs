@@ -32,6 +32,9 @@ fn status(run: &RunRecord) -> f64 {
     })
 }
 
+/// Reads a value off a run.
+type Reader = Box<dyn Fn(&RunRecord) -> Option<f64>>;
+
 /// A column: letters, digits and blanks, no digit first, no word of SQL; blanks become underscores in the database.
 pub struct Property {
     /// The name.
@@ -39,7 +42,7 @@ pub struct Property {
     /// The type, as SQLite takes it.
     pub kind: &'static str,
     /// The value of a run; empty where it has none.
-    pub value: Box<dyn Fn(&RunRecord) -> Option<f64>>,
+    pub value: Reader,
 }
 
 fn property(

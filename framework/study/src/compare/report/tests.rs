@@ -45,7 +45,7 @@ fn figures_are_those_of_the_runs() {
     let study = study(&["rlg", "half", "never"]);
     let time = |key: RunKey| match key.variant {
         0 => Some(0.1 + 0.01 * key.seed as f64),
-        1 => (key.seed % 3 == 0).then_some(0.05),
+        1 => (key.seed.is_multiple_of(3)).then_some(0.05),
         _ => None,
     };
     let data = data(&page(&study, time));
@@ -68,7 +68,7 @@ fn figures_are_those_of_the_runs() {
 #[test]
 fn equals_share_the_first_place() {
     let study = study(&["rlg", "same", "slow"]);
-    let noise = |seed: u64| if seed % 2 == 0 { 1.02 } else { 0.99 };
+    let noise = |seed: u64| if seed.is_multiple_of(2) { 1.02 } else { 0.99 };
     let time = |key: RunKey| Some([1.0, noise(key.seed), 5.0][key.variant] * (1.0 + 0.1 * key.seed as f64));
     let data = data(&page(&study, time));
     let mut best: Vec<u64> =
