@@ -33,7 +33,7 @@ const PRIVATE: &[(&str, &[&str])] = &[
     ("toml", &["regrasp-study", "regrasp"]),
     ("clap", &["regrasp"]),
     ("rapier3d-f64", &["regrasp-physics"]),
-    ("faer", &[]),
+    ("faer", &["regrasp-surfaces"]),
     ("rand", &[]),
 ];
 

@@ -3,6 +3,7 @@
 mod bvh;
 mod closest;
 pub mod geodesic;
+pub mod heat;
 mod hollows;
 mod lift;
 pub mod parametric;

@@ -47,6 +47,14 @@ impl Strip {
         }
     }
 
+    /// The same path from its end to its start.
+    pub fn reverse(&mut self, polyhedron: &Polyhedron) {
+        self.crossings.reverse();
+        for crossing in &mut self.crossings {
+            *crossing = polyhedron.half_edges[*crossing as usize].twin;
+        }
+    }
+
     /// Shortens the path locally and writes its points, each with the facet of the piece that follows.
     ///
     /// `facet` holds both ends where no edge is crossed.

@@ -74,11 +74,14 @@ const MOST_TRIES: usize = 8;
 pub struct ParametricSettings {
     /// Largest distance between two points of the closed form's path through which the path over the facets is led, in radii of
     /// the object (the largest distance of a vertex from its origin), in 0.005..=0.5. Default 0.06, a neutral choice.
+    #[schemars(range(min = 0.005, max = 0.5))]
     pub spacing: f64,
     /// An edge is sharp where its facets' normals differ by more than this angle, in 1..=180 degrees. Default 30, as for `surface/geodesic`.
+    #[schemars(range(min = 1.0, max = 180.0))]
     pub sharp_angle_deg: f64,
     /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked, in
     /// 1e-5..=1e-2; at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
+    #[schemars(range(min = 1e-5, max = 1e-2))]
     pub step: f64,
 }
 
