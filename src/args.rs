@@ -22,6 +22,7 @@ pub enum Command {
     Verify(VerifyArgs),
     Compare(crate::compare::CompareArgs),
     View(crate::view::ViewArgs),
+    Export(crate::export::ExportArgs),
     Replay(crate::replay::ReplayArgs),
     Hand(crate::hand::HandArgs),
     Plugins(PluginsArgs),
@@ -63,6 +64,9 @@ pub struct PlanArgs {
     /// Write the plan to this file.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Keep the stable grasps of the manipulation graph in this file, `.json` or `.npz`.
+    #[arg(long, value_name = "FILE")]
+    pub grasps: Option<PathBuf>,
     /// Write a page that plays the plan, beside the plan file or to a temporary place, and open it in the browser.
     #[arg(long)]
     pub view: bool,

@@ -26,6 +26,7 @@
 //! ```
 
 pub use regrasp_api as api;
+pub use regrasp_export as export;
 pub use regrasp_host as host;
 pub use regrasp_physics as physics;
 pub use regrasp_plan as plan;

@@ -4,6 +4,7 @@
 
 mod args;
 mod compare;
+mod export;
 mod failure;
 mod hand;
 mod new_plugin;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Verify(args) => verify::run(args),
         Command::Compare(args) => compare::run(args),
         Command::View(args) => view::run(args),
+        Command::Export(args) => export::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Hand(args) => hand::run(args),
         Command::Plugins(args) => plugins::run(args),

@@ -16,6 +16,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-verify", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
     ("regrasp-view", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
     ("regrasp-conformance", &["regrasp-api", "regrasp-world"]),
+    ("regrasp-export", &["regrasp-api", "regrasp-physics", "regrasp-plan", "regrasp-world"]),
     ("regrasp-physics", &["regrasp-api", "regrasp-world"]),
 ];
 

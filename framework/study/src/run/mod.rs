@@ -1,6 +1,7 @@
 //! One run: from a scenario to a plan that was verified.
 
 mod error;
+mod grasps;
 mod plan_file;
 
 pub use error::*;

@@ -1,0 +1,93 @@
+//! The forces that hold the object, state by state.
+
+use crate::ExportError;
+use regrasp_api::{Configuration, FingerIndex, Hand, ObjectModel, Vec3};
+use regrasp_physics::{ContactForce, Friction, Held, SimulationSettings, Stage, grasp_forces};
+use regrasp_plan::{Motion, Plan, Segment, SegmentKind};
+
+/// The forces of a whole motion, state by state in the order of [`Scene::states`].
+pub(crate) struct Forces {
+    held: Vec<Option<Held>>,
+    /// Why there are none at all.
+    missing: Option<String>,
+    settings: SimulationSettings,
+}
+
+impl Forces {
+    /// Forces that hold the object against gravity, as far inside the friction cones that the plan claims as the joints' efforts allow.
+    pub fn new(
+        plan: &Plan,
+        motion: &Motion,
+        (hand, object): (&dyn Hand, &ObjectModel),
+    ) -> Result<Self, ExportError> {
+        let settings = SimulationSettings::default();
+        let Some(cone) = plan.claims.contact.cone else {
+            let model = &plan.claims.contact.model;
+            let missing =
+                format!("`{model}` claims no elliptic friction cone, so no grasp forces are exported");
+            let count = motion.segments.iter().map(|segment| segment.states.len()).sum();
+            return Ok(Self { held: vec![None; count], missing: Some(missing), settings });
+        };
+        let stages: Vec<Stage<'_>> = motion.segments.iter().map(stage).collect();
+        let g_H = Vec3::from(plan.scenario.problem.gravity);
+        let friction = Friction { mu: cone.mu, gamma: cone.gamma };
+        let held = grasp_forces((hand, object, g_H), friction, &stages, &settings)?;
+        Ok(Self { held: held.into_iter().flatten().collect(), missing: None, settings })
+    }
+
+    /// What a finger exerts on the object in a state (in H); `None` where it does not hold it.
+    pub fn force(&self, state: usize, finger: FingerIndex) -> Option<ContactForce> {
+        self.held[state].as_ref().and_then(|held| held.forces[finger])
+    }
+
+    /// The least distance of a force from its cone (N); not positive where no forces within cones and efforts hold the object.
+    pub fn margin(&self, state: usize) -> Option<f64> {
+        self.held[state].as_ref().map(|held| held.margin)
+    }
+
+    /// Where a joint's motor must aim so that its spring exerts the joint's part of the forces: q + τ/k.
+    pub fn target(
+        &self,
+        state: usize,
+        q: &Configuration,
+        finger: FingerIndex,
+        joint: usize,
+        prismatic: bool,
+    ) -> f64 {
+        let effort = self.held[state].as_ref().map_or(0.0, |held| held.efforts[finger][joint]);
+        q.joints[finger][joint] + effort / self.stiffness(prismatic)
+    }
+
+    /// Stiffness of the motors (N·m/rad; N/m where prismatic).
+    pub fn stiffness(&self, prismatic: bool) -> f64 {
+        if prismatic { self.settings.linear_stiffness } else { self.settings.stiffness }
+    }
+
+    /// Damping of the motors (N·m·s/rad; N·s/m where prismatic).
+    pub fn damping(&self, prismatic: bool) -> f64 {
+        self.stiffness(prismatic) * self.settings.damping_time
+    }
+
+    /// What whoever exports should know.
+    pub fn notes(&self) -> Vec<String> {
+        let outside =
+            self.held.iter().filter(|held| held.as_ref().is_none_or(|held| held.margin <= 0.0)).count();
+        match (&self.missing, outside) {
+            (Some(missing), _) => vec![missing.clone()],
+            (None, 0) => Vec::new(),
+            (None, outside) => vec![format!(
+                "in {outside} of {} states no forces within the friction cones and the joints' efforts hold the object's weight; \
+                 `force_margin` is not positive there, and the forces are the nearest",
+                self.held.len()
+            )],
+        }
+    }
+}
+
+fn stage(segment: &Segment) -> Stage<'_> {
+    let moving = match segment.kind {
+        SegmentKind::Transfer => None,
+        SegmentKind::Regrasp(finger) => Some(finger),
+    };
+    Stage { states: &segment.states, times: &segment.times, moving }
+}

@@ -1,0 +1,140 @@
+//! A plan with everything that its exports need.
+
+use crate::forces::Forces;
+use crate::names::{Names, file_stem};
+use crate::solid::Solids;
+use crate::{ExportError, File, Format};
+use regrasp_api::{
+    Configuration, FingerIndex, Hand, HandDescription, ObjectModel, ObjectShape, Pose, PoseDescription,
+};
+use regrasp_plan::{Motion, Plan};
+use regrasp_world::ChainHand;
+use std::path::Path;
+
+/// A plan, its hand and its object, ready to be exported.
+pub struct Scene<'a> {
+    pub(crate) plan: &'a Plan,
+    pub(crate) hand: ChainHand,
+    pub(crate) object: ObjectModel,
+    pub(crate) motion: Motion,
+    pub(crate) names: Names,
+    pub(crate) forces: Forces,
+    pub(crate) solids: Solids,
+    /// For each finger and joint the pose of the joint's frame, at position 0, in the frame of the link before (H for the first).
+    pub(crate) origins: Vec<Vec<Pose>>,
+}
+
+impl<'a> Scene<'a> {
+    /// Prepares a plan, which need not be valid but must fit its own hand.
+    pub fn new(plan: &'a Plan) -> Result<Self, ExportError> {
+        let problem = &plan.scenario.problem;
+        let hand = ChainHand::new(problem.hand.clone())?;
+        let object = regrasp_world::load_object(&problem.object, Path::new(""))?;
+        let motion = regrasp_plan::motion(&plan.segments)?;
+        check(&motion, &problem.hand)?;
+        let names = Names::new(&problem.hand, &problem.obstacle);
+        let forces = Forces::new(plan, &motion, (&hand, &object))?;
+        let solids = Solids::new(problem)?;
+        let origins = origins(&problem.hand)?;
+        Ok(Self { plan, hand, object, motion, names, forces, solids, origins })
+    }
+
+    /// The files of one format. `stem` begins their names; what no file's name may hold is replaced.
+    pub fn export(&self, format: Format, stem: &str) -> Result<Vec<File>, ExportError> {
+        let stem = &file_stem(stem);
+        match format {
+            Format::Gltf => Ok(crate::gltf::files(self, stem)),
+            Format::Urdf => Ok(crate::urdf::files(self, stem)),
+            Format::Mjcf => Ok(crate::mjcf::files(self, stem)),
+            Format::Csv => Ok(crate::csv::files(self, stem)),
+            Format::Npz => crate::npy::files(self, stem),
+        }
+    }
+
+    /// What whoever exports should know: why there are no forces, or that some are outside their cones.
+    pub fn notes(&self) -> Vec<String> {
+        self.forces.notes()
+    }
+
+    pub(crate) fn description(&self) -> &HandDescription {
+        self.hand.description()
+    }
+
+    /// Every state of the motion, with its segment and time (s).
+    pub(crate) fn states(&self) -> impl Iterator<Item = (usize, f64, &Configuration)> {
+        let segments = self.motion.segments.iter().enumerate();
+        segments.flat_map(|(s, segment)| {
+            segment.states.iter().zip(&segment.times).map(move |(q, &time)| (s, time, q))
+        })
+    }
+
+    /// The states without those that repeat the end of the segment before.
+    pub(crate) fn keys(&self) -> Vec<(f64, &Configuration)> {
+        let mut keys: Vec<(f64, &Configuration)> = Vec::new();
+        for (_, time, q) in self.states() {
+            if keys.last().is_none_or(|&(last, _)| time > last) {
+                keys.push((time, q));
+            }
+        }
+        keys
+    }
+
+    /// What drives a joint that does not move by itself.
+    pub(crate) fn driver(&self, finger: usize, joint: usize) -> Option<Driver> {
+        let joints = &self.description().finger[finger].joint;
+        let mimic = joints[joint].mimic.as_ref()?;
+        let driver = joints.iter().position(|other| other.name == mimic.joint)?;
+        Some(Driver { joint: driver, multiplier: mimic.multiplier, offset: mimic.offset })
+    }
+
+    /// Whether the object's mesh is its convex hull.
+    pub(crate) fn object_is_convex(&self) -> bool {
+        let ring = matches!(self.plan.scenario.problem.object.shape, ObjectShape::Torus { .. });
+        !ring && self.object.mesh.is_locally_convex()
+    }
+
+    pub(crate) fn fingers(&self) -> impl Iterator<Item = FingerIndex> + use<> {
+        (0..self.hand.finger_count()).map(|finger| FingerIndex(finger as u8))
+    }
+}
+
+/// q = `multiplier` · q of the finger's joint number `joint` + `offset`.
+pub(crate) struct Driver {
+    pub joint: usize,
+    pub multiplier: f64,
+    pub offset: f64,
+}
+
+/// Whether every state has the hand's fingers and joints.
+fn check(motion: &Motion, hand: &HandDescription) -> Result<(), ExportError> {
+    let counts: Vec<usize> = hand.finger.iter().map(|finger| finger.joint.len()).collect();
+    for (segment, part) in motion.segments.iter().enumerate() {
+        for (state, q) in part.states.iter().enumerate() {
+            let joints = q.joints.iter().map(|(_, joints)| joints.len());
+            if !joints.eq(counts.iter().copied()) {
+                return Err(ExportError::Misfit { segment, state });
+            }
+        }
+    }
+    let is_empty = motion.segments.iter().all(|segment| segment.states.is_empty());
+    if is_empty { Err(ExportError::Empty) } else { Ok(()) }
+}
+
+fn origins(hand: &HandDescription) -> Result<Vec<Vec<Pose>>, ExportError> {
+    let mut all = Vec::new();
+    for (f, finger) in hand.finger.iter().enumerate() {
+        let mut X = pose(&finger.base, || format!("hand.finger[{f}].base"))?;
+        let mut origins = Vec::new();
+        for (j, joint) in finger.joint.iter().enumerate() {
+            origins.push(X * pose(&joint.origin, || format!("hand.finger[{f}].joint[{j}].origin"))?);
+            X = Pose::identity();
+        }
+        all.push(origins);
+    }
+    Ok(all)
+}
+
+/// The pose that a description gives, or what is wrong at `key`.
+pub(crate) fn pose(description: &PoseDescription, key: impl Fn() -> String) -> Result<Pose, ExportError> {
+    description.pose().map_err(|reason| ExportError::Pose { key: key(), reason })
+}
