@@ -42,10 +42,14 @@ fn table(cells: &[Cell<'_>]) -> String {
             ms(0.5),
             ms(0.9),
             ratio.map_or("-".to_owned(), |ratio| format!("{:.2}", ratio.value)),
-            compared.map_or("-".to_owned(), |compared| format!("{:.3}", compared.time_p)),
+            compared.map_or("-".to_owned(), |compared| p_value(compared.time_p)),
         ]);
     }
     table.text()
+}
+
+fn p_value(p: f64) -> String {
+    if p < 0.001 { "< 0.001".into() } else { format!("{p:.3}") }
 }
 
 /// A quantile of the planning time over the successes (s).

@@ -55,7 +55,7 @@ fn schemas_are_json() {
 #[test]
 fn every_help_has_an_example() {
     let desk = Desk::new();
-    for command in ["plan", "verify", "plugins", "scenarios", "schema", "new-plugin"] {
+    for command in ["plan", "verify", "compare", "plugins", "scenarios", "schema", "new-plugin"] {
         let said = desk.run(&format!("{command} --help"));
         assert_eq!(said.code, 0);
         assert!(said.out.contains("Example"), "{command}");

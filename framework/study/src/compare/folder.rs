@@ -28,12 +28,17 @@ impl Folder {
     /// A folder that holds another study, or something else, is refused.
     pub fn open(path: &Path, study: &mut Study) -> Result<Self, StudyError> {
         fs::create_dir_all(path).map_err(|source| StudyError::Io { path: path.to_owned(), source })?;
-        let stranger = stranger(path)?;
+        let begun = path.join(STUDY_FILE);
+        let refuse = |entry| StudyError::NotEmpty { folder: path.to_owned(), entry };
+        if let (false, Some(entry)) = (begun.exists(), stranger(path)?) {
+            return Err(refuse(entry));
+        }
         let (journal, found) = Journal::open(path)?;
-        if path.join(STUDY_FILE).exists() {
-            resume(path, study)?;
-        } else if let Some(entry) = stranger.or_else(|| (!found.is_empty()).then(|| JOURNAL.to_owned())) {
-            return Err(StudyError::NotEmpty { folder: path.to_owned(), entry });
+        // Looked at again: whoever held the journal may have begun the study meanwhile.
+        match begun.exists() {
+            true => resume(path, study)?,
+            false if found.is_empty() => {}
+            false => return Err(refuse(JOURNAL.to_owned())),
         }
         sweep(path);
         write_file(&path.join(STUDY_FILE), |out| write_json(study, out))?;
@@ -160,9 +165,11 @@ fn is_temporary(name: &str) -> bool {
     name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1)
 }
 
-/// Deletes what a killed process left behind half written.
+/// Deletes what a killed process left behind half written, in the folder and those within.
 fn sweep(folder: &Path) {
-    for folder in [folder.to_owned(), folder.join(PLANS)] {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let inner = entries.map(|entry| entry.path()).filter(|path| path.is_dir());
+    for folder in inner.chain([folder.to_owned()]) {
         let entries = fs::read_dir(folder).into_iter().flatten().flatten();
         for entry in entries.filter(|entry| is_temporary(&entry.file_name().to_string_lossy())) {
             // A file that cannot be deleted is in nobody's way.
