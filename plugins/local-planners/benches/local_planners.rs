@@ -17,9 +17,10 @@ fn sphere() -> ObjectModel {
 /// Elements are steps: criterion reports the time of one.
 fn rolling(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("rolling");
-    for (name, object) in [("sphere", sphere()), ("cube", support::cube())] {
+    for (name, object) in [("sphere", sphere()), ("cube", support::cube()), ("ring", support::ring())] {
         let bench = Bench::new(support::four_finger(), object);
-        let rolling = Rolling::new(RollingSettings::default(), &*bench.hand).unwrap();
+        let (settings, mesh) = (RollingSettings::default(), &bench.object.mesh);
+        let rolling = Rolling::for_object(settings, &*bench.hand, mesh).unwrap();
         let mut random = Random::from_key(1, 0, 0, 0);
         let (from, to, steps) = (0..1000)
             .find_map(|_| {

@@ -31,6 +31,7 @@ fn assert_means_rolling(
     assert!(worst.closure <= 10e-6 * 1.05, "{worst:?}");
     assert!(worst.slip <= 50e-6 * 1.05, "{worst:?}");
     assert!(worst.normal < 1e-6, "{worst:?}");
+    assert!(worst.jump <= 10e-6 * 1.05, "{worst:?}");
     assert!(worst.step < 1.3e-3, "{worst:?}");
     (reached, worst)
 }
@@ -59,6 +60,21 @@ fn random_transfers_keep_half_of_every_tolerance() {
             assert!(moved > 1.0, "{name}: hardly anything moved ({moved})");
         }
     }
+}
+
+/// A ring's inner side is concave one way and convex the other: while a tip turns about an edge, its contact may jump over
+/// another, and moves no farther than its centre all the same.
+#[test]
+fn contacts_on_a_ring_do_not_jump_while_they_turn() {
+    let bench = support::Bench::new(support::four_finger(), support::ring());
+    let (mut random, mut lost) = (Random::from_key(8, 1, 0, 0), 0);
+    for _ in 0..60 {
+        let from = support::grasp(&bench, &mut random);
+        let to = support::nearby(&from.X_HO, &mut random, 0.005, 0.6);
+        let (reached, _) = assert_means_rolling(&bench, &from, &to);
+        lost += usize::from(reached.stop == Some(Reason::Closure));
+    }
+    assert!(lost > 0, "no contact came to a concave edge");
 }
 
 /// Four free tips around the object's equator (x, y, -x, -y), holding it by glue.

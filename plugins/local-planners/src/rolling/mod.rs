@@ -1,13 +1,14 @@
 //! `local-planner/rolling`: the object moves straight, the fingertips roll on it without slip.
 
 pub(crate) mod constraint;
+mod jump;
 mod span;
 mod step;
 
 use crate::common::{Levers, largest_travel, wrong_target};
 use crate::transfer::{Motion, Pace, demand_fingertip};
 use regrasp_api::{
-    Build, CallError, Configuration, Context, Entry, Fingertip, Hand, Hint, LocalPlanner, Path, Pose,
+    Build, CallError, Configuration, Context, Entry, Fingertip, Hand, Hint, LocalPlanner, Mesh, Path, Pose,
     Reached, Reason, Settings, SettingsError, Slot, Target, Task, check_count, check_range, check_settings,
 };
 use schemars::JsonSchema;
@@ -60,13 +61,24 @@ impl Settings for RollingSettings {
 pub struct Rolling {
     settings: RollingSettings,
     levers: Levers,
+    /// Whether the object is convex, so that no contact can jump.
+    is_convex: bool,
 }
 
 impl Rolling {
-    /// A planner with these settings for this hand, or why they are refused.
+    /// A planner with these settings for this hand and any object, or why they are refused.
     pub fn new(settings: RollingSettings, hand: &dyn Hand) -> Result<Self, SettingsError> {
         settings.validate()?;
-        Ok(Self { settings, levers: Levers::new(hand) })
+        Ok(Self { settings, levers: Levers::new(hand), is_convex: false })
+    }
+
+    /// The same for objects of this mesh alone: quicker where it is convex.
+    pub fn for_object(
+        settings: RollingSettings,
+        hand: &dyn Hand,
+        mesh: &Mesh,
+    ) -> Result<Self, SettingsError> {
+        Ok(Self { is_convex: jump::is_convex(mesh), ..Self::new(settings, hand)? })
     }
 
     fn roller<'a>(&'a self, task: &'a Task<'a>, from: &Configuration, to: &Pose) -> Roller<'a> {
@@ -75,6 +87,7 @@ impl Rolling {
             levers: &self.levers,
             motion: Motion::new(&from.X_HO, to),
             holding: from.holding(),
+            is_convex: self.is_convex,
             radius: task.hand.fingertip_radius(),
             closure: self.settings.tolerance_share * task.tolerances.closure,
             slip: self.settings.tolerance_share * task.tolerances.slip,
@@ -171,7 +184,8 @@ regrasp_api::inventory::submit! {
         check: check_settings::<RollingSettings>,
         build: Build::LocalPlanner(|json, parts| {
             demand_fingertip(Fingertip::Ball, parts.hand)?;
-            Ok(Box::new(Rolling::new(RollingSettings::from_json(json)?, parts.hand)?))
+            let settings = RollingSettings::from_json(json)?;
+            Ok(Box::new(Rolling::for_object(settings, parts.hand, &parts.object.mesh)?))
         }),
     }
 }

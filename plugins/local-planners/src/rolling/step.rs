@@ -38,6 +38,7 @@ pub(crate) struct Roller<'a> {
     pub levers: &'a Levers,
     pub motion: Motion,
     pub holding: FingerSet,
+    pub is_convex: bool,
     /// Fingertip radius (m).
     pub radius: f64,
     /// Largest closure residual (m) between states.
@@ -167,15 +168,6 @@ impl Roller<'_> {
             X_HMid,
         };
         if self.opens(&span) { Err(Failure::Finer) } else { Ok((joints, end)) }
-    }
-
-    /// Whether the contact point jumped, as it does where the fingertip leaves one facet of a concave edge for the other.
-    ///
-    /// On a convex object the closest point never moves farther than the fingertip's centre (projection onto a convex set is
-    /// nonexpansive); what is beyond that is the jump. Jumps shorter than the closure bound pass.
-    fn jumps(&self, a: &Contact, b: &Contact) -> bool {
-        let of_center = (b.tip_center(self.radius) - a.tip_center(self.radius)).norm();
-        (b.p_OC - a.p_OC).norm() - of_center > self.closure
     }
 
     /// Slip (m, in O) over one step: how far the fingertip's material point at the contact moves along the object.

@@ -19,6 +19,8 @@ pub struct Transfer {
     pub normal: f64,
     /// Largest motion (m) of a fingertip's centre over the object between two states.
     pub step: f64,
+    /// By how much farther (m) a contact point moved than its fingertip's centre, over the object, between two instants.
+    pub jump: f64,
     /// Length (m) that each contact point travelled on the object.
     pub rolled: [f64; MAX_FINGERS],
 }
@@ -39,6 +41,13 @@ struct Touch {
     p_OC: Vec3,
     n_O: Vec3,
     gap: f64,
+}
+
+impl Touch {
+    /// The fingertip's centre in O.
+    fn center(&self) -> Vec3 {
+        geometry::to_object(&self.X_HO, &self.X_HF.translation.vector)
+    }
 }
 
 fn touch(bench: &Bench, q: &Configuration, finger: FingerIndex) -> Touch {
@@ -73,6 +82,8 @@ pub fn transfer(bench: &Bench, path: &Path) -> Transfer {
                 let now = touch(bench, &between(&pair[0], &pair[1], i as f64 / FINE as f64), finger);
                 net += 0.5 * (separation(&before, &now) - separation(&now, &before));
                 worst.closure = worst.closure.max(now.gap.abs());
+                worst.jump =
+                    worst.jump.max((now.p_OC - before.p_OC).norm() - (now.center() - before.center()).norm());
                 worst.slip = worst.slip.max(net.norm());
                 worst.rolled[finger.index()] += (now.p_OC - before.p_OC).norm();
                 before = now;
