@@ -1,4 +1,4 @@
-//! Time of geodesics, projections and edge distances; each figure is the mean over 256 fixed inputs.
+//! Time of geodesics, of the paths of `surface/steiner`, projections and edge distances; each figure is the mean over 256 fixed inputs.
 
 #[path = "../tests/common/mod.rs"]
 #[allow(unused)]
@@ -8,6 +8,7 @@ use common::meshes;
 use criterion::{Criterion, criterion_group, criterion_main};
 use regrasp_api::{Contact, Context, Mesh, Random, SurfaceParam, SurfacePath, Uninterrupted, Vec3};
 use regrasp_surfaces::geodesic::{Geodesic, GeodesicSettings};
+use regrasp_surfaces::steiner::{Steiner, SteinerSettings};
 use std::hint::black_box;
 
 const RADIUS: f64 = 0.010;
@@ -50,15 +51,37 @@ fn geodesics(criterion: &mut Criterion) {
         let surface = surface(&mesh);
         for (kind, low, high) in [("planning", 0.02, 0.04), ("random", 0.0, 1.0)] {
             let pairs = pairs(&surface, low, high);
-            let (mut path, mut index) = (SurfacePath::default(), 0);
-            let mut context = Context::new(Random::from_key(0, 0, 0, 0), &Uninterrupted);
-            criterion.bench_function(&format!("geodesic/{kind}/{name}"), |bencher| {
-                bencher.iter(|| {
-                    index = (index + 1) % COUNT;
-                    let (from, to) = &pairs[index];
-                    black_box(surface.geodesic(from, to, &mut path, &mut context)).expect("not interrupted")
-                });
-            });
+            time_paths(criterion, &format!("geodesic/{kind}/{name}"), &surface, &pairs);
+        }
+    }
+}
+
+fn time_paths(
+    criterion: &mut Criterion,
+    name: &str,
+    surface: &dyn SurfaceParam,
+    pairs: &[(Contact, Contact)],
+) {
+    let (mut path, mut index) = (SurfacePath::default(), 0);
+    let mut context = Context::new(Random::from_key(0, 0, 0, 0), &Uninterrupted);
+    criterion.bench_function(name, |bencher| {
+        bencher.iter(|| {
+            index = (index + 1) % COUNT;
+            let (from, to) = &pairs[index];
+            black_box(surface.geodesic(from, to, &mut path, &mut context)).expect("not interrupted")
+        });
+    });
+}
+
+/// The pairs of `geodesic/planning`, on the default surface's competitor that the paper cites.
+fn steiner(criterion: &mut Criterion) {
+    for (name, mesh) in objects() {
+        let pairs = pairs(&surface(&mesh), 0.02, 0.04);
+        for straighten in [false, true] {
+            let settings = SteinerSettings { straighten, ..SteinerSettings::default() };
+            let surface = Steiner::new(&settings, &mesh, RADIUS).expect("the mesh is sound");
+            let kind = if straighten { "straightened" } else { "as-cited" };
+            time_paths(criterion, &format!("steiner/{kind}/{name}"), &surface, &pairs);
         }
     }
 }
@@ -117,6 +140,6 @@ fn preparation(criterion: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20).without_plots().warm_up_time(std::time::Duration::from_millis(200)).measurement_time(std::time::Duration::from_millis(600));
-    targets = geodesics, projections, edge_distances, preparation
+    targets = geodesics, steiner, projections, edge_distances, preparation
 }
 criterion_main!(benches);

@@ -24,8 +24,13 @@ impl Piece {
         Self { from: from.contact, to: to.contact, travel: to.lift_length - from.lift_length }
     }
 
-    pub(super) fn is_straight(&self) -> bool {
+    fn is_straight(&self) -> bool {
         self.from.n_O == self.to.n_O
+    }
+
+    /// Whether this is a turn with a straight piece ahead.
+    pub(super) fn is_between(&self, next: &Self) -> bool {
+        !self.is_straight() && next.is_straight()
     }
 
     pub(super) fn at(&self, t: f64) -> Contact {

@@ -64,27 +64,20 @@ impl Follower<'_> {
             return false;
         }
         let mut left_at: Option<Touch> = None;
-        let piece = |index: usize| Some(Piece::new(rolled.get(index)?, rolled.get(index + 1)?));
-        let mut known_ahead = None;
-        for index in 0..rolled.len() - 1 {
-            let Some(here) = piece(index) else { break };
-            let blocked = match (known_ahead.take(), piece(index + 1)) {
+        let mut looked_ahead = None;
+        for index in 1..rolled.len() {
+            let piece = Piece::new(&rolled[index - 1], &rolled[index]);
+            let next = rolled.get(index + 1).map(|after| Piece::new(&rolled[index], after));
+            let blocked = match (looked_ahead.take(), next) {
                 (Some(known), _) => known,
-                // Of a short turn only the ends are looked at, and they are its neighbours' too.
-                (None, Some(next))
-                    if here.travel <= self.step && !here.is_straight() && next.is_straight() =>
-                {
+                (None, Some(next)) if piece.travel <= self.step && piece.is_between(&next) => {
                     let ahead = self.blocked(&next, SINK, near);
-                    known_ahead = Some(ahead);
-                    match (&left_at, ahead) {
-                        (Some(_), _) => Some([0.0, 1.0]),
-                        (None, Some([0.0, _])) => self.blocked(&here, SINK, near),
-                        (None, _) => None,
-                    }
+                    looked_ahead = Some(ahead);
+                    self.blocked_before(&piece, ahead, left_at.is_some(), near)
                 }
-                (None, _) => self.blocked(&here, SINK, near),
+                (None, _) => self.blocked(&piece, SINK, near),
             };
-            if !self.pass(path, &here, blocked, &mut left_at, near) {
+            if !self.pass(path, &piece, blocked, &mut left_at, near) {
                 return false;
             }
         }
@@ -92,7 +85,23 @@ impl Follower<'_> {
         left_at.is_none_or(|left| self.slide(path, &left, &self.touch(last), near))
     }
 
-    /// Appends a piece of the rolled path of which a part may be blocked; `left_at` is where the ball left it for a hollow, before and after.
+    /// What of a short turn is blocked: only its ends are looked at, and they are its neighbours' too.
+    fn blocked_before(
+        &self,
+        turn: &Piece,
+        ahead: Option<[f64; 2]>,
+        is_away: bool,
+        near: &mut Vec<u32>,
+    ) -> Option<[f64; 2]> {
+        match ahead {
+            _ if is_away => Some([0.0, 1.0]),
+            Some([0.0, _]) => self.blocked(turn, SINK, near),
+            _ => None,
+        }
+    }
+
+    /// Appends a piece of the rolled path of which a part may be blocked; `left_at` is where the ball left it for a hollow,
+    /// before and after.
     fn pass(
         &self,
         path: &mut SurfacePath,
