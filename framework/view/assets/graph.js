@@ -99,7 +99,7 @@ export class GraphTab {
             const p = scale(rotate(pose.q, contact.point), r / this.app.stage.bodyRadius);
             group.append(drawing("circle", { cx: p[0], cy: -p[1], r: r * 0.24, fill: FINGER_COLORS[f % FINGER_COLORS.length] }));
         });
-        if (end) group.append(drawing("text", { y: -r * 1.25, "font-size": r * 0.85 }, end));
+        if (end) group.append(drawing("text", { y: -r * 1.25, "font-size": r * 0.75 }, end));
         group.append(drawing("title", {}, this.label(node)));
         const listen = (type, action) => group.addEventListener(type, action);
         listen("pointerenter", () => this.preview(node));
@@ -135,6 +135,7 @@ export class GraphTab {
     showNode(node) {
         this.shown = true;
         this.app.stage.show(this.states.snapshot(node));
+        this.app.title(`Grasp ${node} of the graph`, this.graph.ends[node] ?? "");
         this.describe(node);
     }
 
@@ -160,7 +161,10 @@ export class GraphTab {
     restore() {
         this.shown = false;
         this.describe(null);
-        if (this.app.snapshot) this.app.stage.show(this.app.snapshot);
+        this.app.captioned = null;
+        if (!this.app.snapshot) return;
+        this.app.stage.show(this.app.snapshot);
+        this.app.caption(this.app.snapshot);
     }
 
     /** Without a motion there is something to see all the same. */
@@ -175,9 +179,10 @@ function layout(states, edges, data) {
     if (!count) return [];
     const features = Array.from({ length: count }, (_, k) => feature(states, k, data));
     const plane = principal(features);
-    const wide = Math.max(...plane.flat().map(Math.abs), 1e-9);
+    // Each direction fills its share of the picture, however much less than the other it varies.
+    const wide = [0, 1].map((i) => Math.max(...plane.map((place) => Math.abs(place[i])), 1e-9));
     const spread = 30 * Math.sqrt(count) + 40;
-    const places = plane.map(([x, y], k) => [(x / wide) * spread + Math.cos(2.4 * k) * 4, (y / wide) * spread + Math.sin(2.4 * k) * 4]);
+    const places = plane.map(([x, y], k) => [(x / wide[0]) * spread + Math.cos(2.4 * k) * 4, (y / wide[1]) * spread * 0.8 + Math.sin(2.4 * k) * 4]);
     if (count <= MOST_RELAXED) relax(places, edges);
     return places;
 }
@@ -224,7 +229,7 @@ function relax(places, edges) {
     for (let step = 0; step < 120; step++) {
         for (const { from, to } of joined) pull(places[from], places[to], 0.004, 60);
         for (let a = 0; a < places.length; a++) {
-            for (let b = a + 1; b < places.length; b++) push(places[a], places[b], 48);
+            for (let b = a + 1; b < places.length; b++) push(places[a], places[b], 58);
         }
     }
 }

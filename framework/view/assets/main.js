@@ -193,9 +193,14 @@ class App {
         id("clock").textContent = `${snapshot.time.toFixed(2)} / ${this.motion.end.toFixed(2)} s`;
         if (this.captioned === segment.index) return;
         this.captioned = segment.index;
-        id("caption-title").textContent = title;
-        id("caption-detail").textContent = segmentDetail(this.motion, segment);
+        this.title(title, segmentDetail(this.motion, segment));
         id("scrub").setAttribute("aria-valuetext", title);
+    }
+
+    /** What the scene shows, in words. */
+    title(title, detail) {
+        id("caption-title").textContent = title;
+        id("caption-detail").textContent = detail;
     }
 
     replayPose(time) {
