@@ -19,12 +19,15 @@ macro_rules! built_in {
 pub const SCENARIOS: &[BuiltIn] = built_in!(
     "": "sphere", "cubic", "ellip-obst", "sphere-tilt", "sphere-free", "cube-free", "ellipsoid-free",
     "sphere-points", "sphere-soft", "sphere-five", "ring", "bracket", "baton",
+    "allegro-ball", "allegro-cube", "three-finger-soft",
     "rgmc-a1-60", "rgmc-a1-80", "rgmc-a1-100", "rgmc-b1",
 );
 
 /// The hands.
-pub const HANDS: &[BuiltIn] =
-    built_in!("hands/": "four-finger", "five-finger", "three-finger", "free-fingertips", "free-points");
+pub const HANDS: &[BuiltIn] = built_in!(
+    "hands/": "four-finger", "five-finger", "three-finger", "free-fingertips", "free-points", "allegro-like",
+    "trifinger-like",
+);
 
 /// The built-in file with this name.
 pub fn find(files: &'static [BuiltIn], name: &str) -> Option<&'static BuiltIn> {
