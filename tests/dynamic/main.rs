@@ -2,6 +2,7 @@
 //!
 //! The libraries are built once, in a folder and with a target folder of their own that stay from run to run, without a network.
 
+mod compare;
 mod new_plugin;
 mod panics;
 mod refusals;
