@@ -6,6 +6,7 @@ import math
 import os
 import re
 import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -403,7 +404,28 @@ def finer(plan, wanted):
     return plan
 
 
-def test_two_thousand_states_are_ready_in_a_second_and_play_smoothly(folder, plan, tmp_path, regrasp, visit, record_property):
+def browser_seconds():
+    """Processor time (s) of everything that this process started: the browser with the part of it that draws."""
+    parents, spent = {}, {}
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rsplit(")", 1)[1].split()
+        except OSError:
+            continue  # It has ended meanwhile.
+        parents[int(stat.parent.name)] = int(fields[1])
+        spent[int(stat.parent.name)] = int(fields[11]) + int(fields[12])
+
+    def ours(process):
+        while process in parents:
+            process = parents[process]
+            if process == os.getpid():
+                return True
+        return False
+
+    return sum(ticks for process, ticks in spent.items() if ours(process)) / os.sysconf("SC_CLK_TCK")
+
+
+def test_two_thousand_states_are_ready_in_a_second_and_play_smoothly(folder, plan, tmp_path, regrasp, visit):
     plan = finer(plan, 2000)
     (tmp_path / "long.json").write_text(json.dumps(plan))
     regrasp("view", "long.json", cwd=tmp_path)
@@ -417,13 +439,19 @@ def test_two_thousand_states_are_ready_in_a_second_and_play_smoothly(folder, pla
         waits.append(seen.page.evaluate("regrasp.readyMs"))
     assert min(waits) < 1000
     seen.page.evaluate("regrasp.app.player.setSpeed(0.25)")
-    rates = []
-    for _ in range(4):
-        seen.page.evaluate("regrasp.play()")
-        seen.page.wait_for_timeout(1500)
-        rates.append(seen.page.evaluate("regrasp.rate()"))
-    print(f"\n{size / 1e6:.1f} MB, ready in {min(waits):.0f} ms, {max(rates):.0f} frames a second at {MODEST['width']}×{MODEST['height']}")
-    # 30 are wanted of a machine that does nothing else. One that compiles at the same time gives a part of its time only, and what this
-    # must catch, work that grows with the plan in every frame, costs far more than half.
-    assert max(rates) > 15
+    seen.page.evaluate("window.drawn = 0; (function next() { window.drawn++; requestAnimationFrame(next); })()")
+    seen.page.evaluate("regrasp.play()")
+    seen.page.wait_for_timeout(1000)
+    begin, spent = seen.page.evaluate("window.drawn"), browser_seconds()
+    seen.page.wait_for_timeout(4000)
+    assert seen.page.evaluate("regrasp.playing")
+    frames = seen.page.evaluate("window.drawn") - begin
+    cost = (browser_seconds() - spent) / frames
+    print(
+        f"\n{size / 1e6:.1f} MB, ready in {min(waits):.0f} ms; at {MODEST['width']} x {MODEST['height']} {frames / 4:.0f} frames a second, "
+        f"{1000 * cost:.0f} ms of processor time each"
+    )
+    # The rate depends on what else the machine does, the processor time of a frame hardly: two idle cores that draw 30 frames a second
+    # may spend 67 ms on each.
+    assert cost < 2 / 30
     quiet(seen, page)

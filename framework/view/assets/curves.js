@@ -31,15 +31,16 @@ export class Curve {
         this.bottom = Math.min(...known, 0) * 1.08;
         this.reading = element("output", { class: "reading" });
         this.note = note;
-        this.line = drawing("line", { class: "head", y1: 0, y2: HEIGHT, x1: 0, x2: 0 });
+        // What moves lies above the drawing, not in it: drawing a curve anew in every frame would cost more than the scene.
+        this.line = element("span", { class: "head", "aria-hidden": "true" });
         this.dot = element("span", { class: "dot", "aria-hidden": "true" });
         const least = values.indexOf(Math.min(...known));
         const low = element("span", { class: "low", title: `smallest: ${digits(values[least])}` });
         this.move(low, motion.time[least], values[least]);
         const picture = drawing("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, preserveAspectRatio: "none", "aria-hidden": "true" });
-        picture.append(...this.bands(), this.area(true), this.area(false), this.line);
+        picture.append(...this.bands(), this.area(true), this.area(false));
         const summary = `${name} over time: from ${digits(values[least])} to ${digits(Math.max(...known))}`;
-        const plot = element("div", { class: "plot", role: "img", "aria-label": summary }, picture, low, this.dot);
+        const plot = element("div", { class: "plot", role: "img", "aria-label": summary }, picture, low, this.line, this.dot);
         follow(plot, (fraction) => player.seek(motion.begin + fraction * motion.duration));
         const title = element("div", { class: "curve-title" }, element("span", { text: name }), this.reading);
         parent.append(element("figure", { class: "curve" }, title, plot));
@@ -78,7 +79,7 @@ export class Curve {
     show(snapshot) {
         const [a, b] = [this.values[snapshot.state], this.values[snapshot.fraction > 0 ? snapshot.state + 1 : snapshot.state]];
         const value = a === null || b === null ? null : a + (b - a) * snapshot.fraction;
-        this.line.setAttribute("transform", `translate(${this.x(snapshot.time)} 0)`);
+        this.line.style.left = `${this.x(snapshot.time) / 10}%`;
         this.dot.hidden = value === null;
         if (value !== null) this.move(this.dot, snapshot.time, value);
         const note = this.note ? this.note(snapshot.state) : "";
