@@ -80,13 +80,16 @@ fn unknown(tree: &Tree<'_>, what: &str, name: &str) -> Fault {
     ))
 }
 
-/// One tip for each joint that is the last to move something: among the ends of what it moves, the one with `tip` in its name, or else the
-/// farthest.
+/// One tip for each joint behind which nothing moves: among the ends of what it moves, the one with `tip` in its name, or else the farthest.
 fn guess(tree: &Tree<'_>) -> Result<Vec<usize>, Fault> {
     let mut best: Vec<(usize, (bool, f64), usize)> = Vec::new();
     for leaf in tree.leaves() {
         let path = tree.path(leaf);
         let Some(last) = path.iter().rposition(|&joint| moves(tree.joint(joint))) else { continue };
+        // What is fixed to a link halfway is no finger.
+        if moves_below(tree, path[last]) {
+            continue;
+        }
         let X = path[last + 1..].iter().fold(Pose::identity(), |X, &joint| X * tree.joint(joint).X_PJ);
         let is_tip = tree.link_of(leaf).name.to_ascii_lowercase().contains("tip");
         let merit = (is_tip, X.translation.vector.norm());
@@ -100,6 +103,18 @@ fn guess(tree: &Tree<'_>) -> Result<Vec<usize>, Fault> {
         return Err(Fault::of_file("there are no fingers: no joint of the file moves"));
     }
     Ok(best.into_iter().map(|(.., leaf)| leaf).collect())
+}
+
+/// Whether some joint behind this one moves.
+fn moves_below(tree: &Tree<'_>, joint: usize) -> bool {
+    let mut open = tree.below(tree.child(joint)).to_vec();
+    while let Some(joint) = open.pop() {
+        if moves(tree.joint(joint)) {
+            return true;
+        }
+        open.extend(tree.below(tree.child(joint)));
+    }
+    false
 }
 
 /// The last link that all tips hang on; the root where there is one tip alone.

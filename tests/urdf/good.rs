@@ -1,0 +1,156 @@
+//! Hands of three to five fingers with three to five joints that nobody has seen before plan a motion that verifies.
+
+use crate::desk::Desk;
+use crate::generator::{Pattern, WEDGE, hand};
+
+/// A scenario for a generated hand: a ball a little above its start, turned by 40°.
+fn scenario(fingers: usize) -> String {
+    let soft = "[plugins.contact-model]\nuse = \"contact-model/soft-finger\"\ngamma = 0.004\n";
+    let pose = "position = [0.0, 0.0, 0.085]";
+    format!(
+        "[hand]\nurdf = \"urdf/hand.urdf\"\nfingertip_radius = 0.01\n\
+         [object]\nfriction = 0.8\nshape = {{ kind = \"sphere\", radius = 0.03 }}\n\
+         [start]\npose = {{ {pose} }}\n[[goal]]\npose = {{ {pose}, axis = [0.0, 0.0, 1.0], angle_deg = 40.0 }}\n{}",
+        if fingers == 3 { soft } else { "" }
+    )
+}
+
+fn desk(pattern: Pattern) -> Desk {
+    let desk = Desk::new();
+    std::fs::create_dir_all(desk.path("urdf")).unwrap();
+    std::fs::create_dir_all(desk.path("meshes")).unwrap();
+    desk.write("urdf/hand.urdf", hand(pattern));
+    desk.write("meshes/wedge.obj", WEDGE);
+    desk.write("a.toml", scenario(pattern.fingers));
+    desk
+}
+
+/// Plans, and verifies the plan file by itself; what `plan` and `verify` say as JSON.
+#[track_caller]
+fn plans(pattern: Pattern) -> (serde_json::Value, serde_json::Value) {
+    let desk = desk(pattern);
+    let said = desk.run("plan a.toml --json -o plan.json");
+    assert_eq!(said.code, 0, "{pattern:?}: {}", said.err);
+    assert!(said.err.contains("fingertips guessed"), "{}", said.err);
+    // The plan stands alone.
+    std::fs::remove_dir_all(desk.path("urdf")).unwrap();
+    std::fs::remove_dir_all(desk.path("meshes")).unwrap();
+    let verified = desk.run("verify plan.json --json");
+    assert_eq!(verified.code, 0, "{pattern:?}: {}", verified.err);
+    (serde_json::from_str(&desk.read("plan.json")).unwrap(), verified.json())
+}
+
+#[test]
+fn every_number_of_fingers_and_joints_plans() {
+    for fingers in 3..=5 {
+        for (joints, link) in [(3, "capsule"), (4, "box"), (5, "cylinder")] {
+            plans(Pattern { fingers, joints, link, driven: false });
+        }
+    }
+}
+
+#[test]
+fn driven_joints_follow_in_every_state_and_the_verifier_looks_at_it() {
+    let (plan, verdict) = plans(Pattern { fingers: 4, joints: 4, link: "capsule", driven: true });
+    for segment in plan["segments"].as_array().unwrap() {
+        for state in segment["states"].as_array().unwrap() {
+            for joints in state["joints"].as_array().unwrap() {
+                let q = |i: usize| joints[i].as_f64().unwrap();
+                assert!((q(3) - (0.8 * q(2) + 0.02)).abs() < 1e-9, "{joints}");
+            }
+        }
+    }
+    assert!(verdict.to_string().contains("driven-joints"), "{verdict}");
+}
+
+#[test]
+fn a_plan_whose_driven_joint_stays_behind_does_not_verify() {
+    let desk = desk(Pattern { fingers: 4, joints: 4, link: "capsule", driven: true });
+    assert_eq!(desk.run("plan a.toml -o plan.json").code, 0);
+    let mut plan: serde_json::Value = serde_json::from_str(&desk.read("plan.json")).unwrap();
+    let q = &mut plan["segments"][0]["states"][1]["joints"][0][3];
+    *q = (q.as_f64().unwrap() + 1e-6).into();
+    desk.write("plan.json", plan.to_string());
+    let said = desk.run("verify plan.json");
+    assert_eq!(said.code, 4, "{}\n{}", said.out, said.err);
+    assert!((said.out + &said.err).contains("driven-joints"));
+}
+
+#[test]
+fn links_of_meshes_become_convex_hulls_found_beside_the_file() {
+    let pattern = Pattern { fingers: 4, joints: 3, link: "mesh", driven: false };
+    let said = desk(pattern).run("hand urdf/hand.urdf --fingertip-radius 0.01");
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(said.out.contains("the convex hull of wedge.obj (7 facets)"), "{}", said.out);
+    plans(pattern);
+}
+
+#[test]
+fn three_fingers_are_refused_without_soft_contacts() {
+    let desk = desk(Pattern { fingers: 3, joints: 3, link: "capsule", driven: false });
+    let said = desk.run("plan a.toml --use contact-model=pcwf");
+    said.assert_fails(2, &["3 fingers", "4 fingers are needed", "contact model"]);
+}
+
+#[test]
+fn the_hand_file_that_is_written_plans_as_the_urdf_does() {
+    let desk = desk(Pattern { fingers: 4, joints: 4, link: "box", driven: true });
+    let said = desk.run("hand urdf/hand.urdf --fingertip-radius 0.01 -o hand.toml --json");
+    assert_eq!(said.code, 0, "{}", said.err);
+    let report = said.json();
+    assert_eq!(report["fingers"].as_array().unwrap().len(), 4);
+    assert_eq!(report["fingers"][0]["tip_link"], "f0_tip");
+    assert_eq!(report["hand"]["finger"][0]["joint"][3]["mimic"]["joint"], "f0_flexion1");
+    assert!(report["object_place"]["quality"].as_f64().unwrap() > 0.0);
+    let segments = |file: &str| {
+        assert_eq!(desk.run(&format!("plan {file} -o {file}.json")).code, 0);
+        serde_json::from_str::<serde_json::Value>(&desk.read(&format!("{file}.json"))).unwrap()["segments"]
+            .clone()
+    };
+    desk.write(
+        "b.toml",
+        scenario(4).replace("urdf = \"urdf/hand.urdf\"\nfingertip_radius = 0.01", "file = \"hand.toml\""),
+    );
+    assert_eq!(segments("a.toml"), segments("b.toml"));
+}
+
+#[test]
+fn bodies_that_always_touch_are_found_and_excluded() {
+    // A block at the root of one finger, and a large ball about the root of the next, fixed to its first link: no posture keeps them apart.
+    let desk = desk(Pattern { fingers: 4, joints: 3, link: "capsule", driven: false });
+    let text = desk.read("urdf/hand.urdf");
+    let with = |text: String, finger: usize, shape: &str| {
+        let knuckle = format!("<link name=\"f{finger}_knuckle\">");
+        assert!(text.contains(&knuckle));
+        text.replacen(&knuckle, &format!("{knuckle}<collision><geometry>{shape}</geometry></collision>"), 1)
+    };
+    let text = with(text, 0, "<box size=\"0.02 0.02 0.03\"/>");
+    desk.write("urdf/hand.urdf", with(text, 1, "<sphere radius=\"0.09\"/>"));
+    let said = desk.run("hand urdf/hand.urdf --fingertip-radius 0.01 --json");
+    assert_eq!(said.code, 0, "{}", said.err);
+    let report = said.json();
+    let pairs = report["report"]["touching"].as_array().unwrap();
+    assert!(pairs.contains(&serde_json::json!(["f0_abduction", "f1_abduction"])), "{pairs:?}");
+    assert_eq!(report["hand"]["touching"], report["report"]["touching"]);
+}
+
+#[test]
+fn what_is_fixed_to_a_link_halfway_is_no_finger() {
+    let desk = desk(Pattern { fingers: 4, joints: 3, link: "capsule", driven: false });
+    let sensor = "<link name=\"sensor_tip\"/><joint name=\"sensor_mount\" type=\"fixed\"><parent link=\"f1_link0\"/>\
+        <child link=\"sensor_tip\"/></joint></robot>";
+    desk.write("urdf/hand.urdf", desk.read("urdf/hand.urdf").replacen("</robot>", sensor, 1));
+    let said = desk.run("hand urdf/hand.urdf --fingertip-radius 0.01 --json");
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(said.json()["report"]["tips"], serde_json::json!(["f0_tip", "f1_tip", "f2_tip", "f3_tip"]));
+}
+
+#[test]
+fn joints_of_no_finger_are_held_and_said() {
+    let desk = desk(Pattern { fingers: 4, joints: 3, link: "capsule", driven: false });
+    let said = desk.run("hand urdf/hand.urdf --fingertip-radius 0.01 --tips f1_tip,f2_tip,f3_tip");
+    assert_eq!(said.code, 0, "{}", said.err);
+    for part in ["3 fingers", "as given", "`f0_flexion1` belongs to no finger: it is held at 0.05"] {
+        assert!(said.out.contains(part), "`{part}` is not in:\n{}", said.out);
+    }
+}
