@@ -54,42 +54,44 @@ pub fn execute(
     folder: &mut Folder,
     with: &Execution<'_>,
 ) -> Result<bool, StudyError> {
-    let study = &prepared.study;
-    let mut keys = study.keys();
+    let mut keys = prepared.study.keys();
     let total = keys.len();
     keys.retain(|key| !folder.holds(*key));
     // Runs that are compared follow each other, so that whatever slows the machine down for a while slows down all of them.
     keys.sort_by_key(|key| (key.scenario, key.seed, key.variant));
     with.progress.begin(total - keys.len(), total);
-    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let job = Job { prepared, clock: with.clock, cancel: with.cancel, tick_s: timed::tick_s(with.clock) };
-    let work = |ended: mpsc::Sender<Ended>| {
-        let keys = std::iter::from_fn(|| keys.get(next.fetch_add(1, Ordering::Relaxed)));
-        for &key in keys.take_while(|_| !job.cancel.interrupted() && !failed.load(Ordering::Relaxed)) {
-            let Some(run) = job.make(key) else { break };
-            if ended.send(run).is_err() {
-                break;
-            }
-        }
+    let job = Job {
+        prepared,
+        clock: with.clock,
+        cancel: with.cancel,
+        tick_s: timed::tick_s(with.clock),
+        keys,
+        next: AtomicUsize::new(0),
+        failed: AtomicBool::new(false),
     };
+    make_and_keep(&job, folder, with)?;
+    Ok(job.keys.iter().all(|key| folder.holds(*key)))
+}
+
+/// Makes the job's runs on several threads, and keeps them on this one.
+fn make_and_keep(job: &Job<'_>, folder: &mut Folder, with: &Execution<'_>) -> Result<(), StudyError> {
     thread::scope(|scope| {
         let (sender, ended) = mpsc::channel();
-        for _ in 0..with.threads.clamp(1, keys.len().max(1)) {
-            let (sender, work) = (sender.clone(), &work);
+        for _ in 0..with.threads.clamp(1, job.keys.len().max(1)) {
+            let sender = sender.clone();
             let builder = thread::Builder::new().name(RUN_THREAD.into()).stack_size(STACK);
             // Where the system grants no more threads those that there are do the work; without any the first run is never made.
-            let _ = builder.spawn_scoped(scope, move || work(sender));
+            let _ = builder.spawn_scoped(scope, move || job.work(&sender));
         }
         drop(sender);
-        let kept: Result<(), StudyError> = ended.iter().try_for_each(|run| {
-            folder.keep(study, run.key, &run.record, run.plan.as_ref())?;
+        let kept = ended.iter().try_for_each(|run: Ended| {
+            folder.keep(&job.prepared.study, run.key, &run.record, run.plan.as_ref())?;
             with.progress.ended(&run.record);
             Ok(())
         });
-        failed.store(kept.is_err(), Ordering::Relaxed);
+        job.failed.store(kept.is_err(), Ordering::Relaxed);
         kept
-    })?;
-    Ok(keys.iter().all(|key| folder.holds(*key)))
+    })
 }
 
 /// A run that came to its end.
@@ -126,9 +128,26 @@ struct Job<'a> {
     cancel: &'a dyn Interrupt,
     /// How long reading the clock takes (s).
     tick_s: f64,
+    /// The runs to be made, in this order.
+    keys: Vec<RunKey>,
+    /// Index of the run that is to be made next.
+    next: AtomicUsize,
+    /// Whether a run could not be kept, so that the others need not be made.
+    failed: AtomicBool,
 }
 
 impl Job<'_> {
+    /// Makes runs until none is left or the study ends.
+    fn work(&self, ended: &mpsc::Sender<Ended>) {
+        while !self.cancel.interrupted() && !self.failed.load(Ordering::Relaxed) {
+            let next = self.next.fetch_add(1, Ordering::Relaxed);
+            let Some(run) = self.keys.get(next).and_then(|key| self.make(*key)) else { return };
+            if ended.send(run).is_err() {
+                return;
+            }
+        }
+    }
+
     /// Makes a run; `None` where the study was cancelled meanwhile.
     fn make(&self, key: RunKey) -> Option<Ended> {
         let setup = self.prepared.setup(key).expect("a study has no runs of what it leaves out");

@@ -298,6 +298,7 @@ fn brief(value: &Value) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::fixture;
     use super::*;
     use serde_json::json;
 
@@ -316,5 +317,53 @@ mod tests {
         assert_eq!(first_difference(&a, &a, ""), None);
         let e = json!({"seeds": {"count": 20}, "names": [1, {}]});
         assert!(first_difference(&a, &e, "").unwrap().contains("`names[0]` is \"a\" there and 1 here"));
+    }
+
+    #[test]
+    fn shards_share_the_runs_out_whole_pairs_of_scenario_and_seed_at_a_time() {
+        let mut study = fixture::study(&["rlg", "other"]);
+        let all = study.keys();
+        assert_eq!(all.len(), 2 * 2 * 12);
+        assert!(all.is_sorted(), "the order of the table of runs");
+        let mut parts = Vec::new();
+        for part in 1..=5 {
+            study.shard = Some(Shard { part, of: 5 });
+            let keys = study.keys();
+            let other = |key: &RunKey| RunKey { variant: 1 - key.variant, ..*key };
+            assert!(keys.iter().all(|key| keys.contains(&other(key))), "compared on the same machine");
+            parts.extend(keys);
+        }
+        parts.sort();
+        assert_eq!(parts, all);
+    }
+
+    #[test]
+    fn what_is_left_out_has_no_runs() {
+        let mut study = fixture::study(&["rlg", "other"]);
+        let pair = LeftOut { scenario: "sphere".into(), variant: "rlg".into(), reason: "a test".into() };
+        study.left_out.push(pair);
+        assert_eq!(study.keys().len(), 3 * 12);
+        assert!(!study.has(RunKey { scenario: 0, variant: 0, seed: 0 }));
+        assert!(study.keeps_plan(RunKey { scenario: 0, variant: 1, seed: 0 }));
+        assert!(!study.has(RunKey { scenario: 1, variant: 0, seed: 12 }), "no such seed");
+    }
+
+    #[test]
+    fn files_are_named_plainly_and_apart() {
+        let mut study = fixture::study(&["rlg"]);
+        study.scenarios[0].name = "a/b \"c\"".into();
+        study.scenarios[1].name = "a-b -c-".into();
+        assert_eq!([study.file_stem(0), study.file_stem(1)], ["a-b--c-", "a-b--c-.2"]);
+    }
+
+    #[test]
+    fn a_study_whose_parts_do_not_fit_is_said_to_be_faulty() {
+        let mut study = fixture::study(&["rlg"]);
+        assert!(study.fault().unwrap().contains("scenarios[0].plugins"), "one slot is not all slots");
+        study.seeds.first = u64::MAX;
+        assert!(study.fault().unwrap().contains("seeds"));
+        study.seeds.first = 0;
+        study.shard = Some(Shard { part: 3, of: 2 });
+        assert!(study.fault().unwrap().contains("shard.part"));
     }
 }
