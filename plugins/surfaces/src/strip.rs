@@ -151,6 +151,10 @@ impl Strip {
             match bend {
                 Some(side) => {
                     let (at, crossing) = sides[side];
+                    // By rounding the funnel may close at the target itself.
+                    if crossing + 1 == self.portals.len() {
+                        break;
+                    }
                     self.bends.push(Bend { crossing, is_left: side == 0, at });
                     // Edges that end at the bend do not narrow the funnel behind it.
                     apex = at;
@@ -172,6 +176,11 @@ impl Strip {
         let mut ahead = (target, usize::MAX);
         let bends = std::mem::take(&mut self.bends);
         for (index, bend) in bends.iter().enumerate().rev() {
+            // What was led around a bend ahead has no crossings of this one any more: its turn comes in the next round.
+            if bend.crossing >= ahead.1 {
+                ahead.0 = bend.at;
+                continue;
+            }
             let before = if index == 0 { self.start } else { bends[index - 1].at };
             let (first, last) = self.fan(polyhedron, bend);
             let vertex = end_of(polyhedron, self.crossings[bend.crossing], bend.is_left);
@@ -224,6 +233,34 @@ impl Strip {
             }
         }
         around
+    }
+
+    /// The vertices beside the strip whose facets' angles differ from a full turn by more than `least` (rad): a crossed edge that ends at
+    /// each, and whether on its left.
+    ///
+    /// Paths on both sides of such a vertex can be locally shortest.
+    pub fn corners(&self, polyhedron: &Polyhedron, least: f64) -> Vec<(usize, bool)> {
+        let mut corners = Vec::new();
+        for is_left in [true, false] {
+            let mut before = u32::MAX;
+            for (index, &crossing) in self.crossings.iter().enumerate() {
+                let vertex = end_of(polyhedron, crossing, is_left);
+                if vertex != before && (TAU - polyhedron.total_angle[vertex as usize]).abs() > least {
+                    corners.push((index, is_left));
+                }
+                before = vertex;
+            }
+        }
+        corners
+    }
+
+    /// Leads the strip `other` around the other side of one of its corners, into this one.
+    pub fn pass(&mut self, polyhedron: &Polyhedron, other: &Self, (crossing, is_left): (usize, bool)) {
+        let (first, last) = other.fan(polyhedron, &Bend { crossing, is_left, at: [0.0; 2] });
+        let around = other.around(polyhedron, is_left, first, last);
+        self.crossings.clear();
+        let (before, after) = (&other.crossings[..first], &other.crossings[last + 1..]);
+        before.iter().chain(&around).chain(after).for_each(|&edge| self.cross(polyhedron, edge));
     }
 
     /// Writes the points of the pulled path.

@@ -43,6 +43,7 @@ fn paths_over_round_solids_are_shortest_within_two_per_cent() {
 #[test]
 fn paths_over_solids_that_are_not_convex_are_shortest_within_two_per_cent() {
     agrees_within_two_per_cent(&meshes::angle_block(0.04, 0.02), 5);
+    agrees_within_two_per_cent(&meshes::angle_block(0.06, 0.01), 8);
     agrees_within_two_per_cent(&meshes::bumpy(0.03, 0.15, 2), 9);
     agrees_within_two_per_cent(&meshes::torus(0.03, 0.012, 24, 16), 6);
 }

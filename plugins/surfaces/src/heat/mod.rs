@@ -9,7 +9,8 @@
 //! The field is as exact as its mesh is fine: facets are cut into four until there are at least `fewest_facets`, and both systems are
 //! set up on the intrinsic Delaunay triangulation of the vertices (`delaunay`), so that thin facets do no harm. By itself the field is
 //! off by some per cent, so it only says which ways a path may take: down the field from either end, and through the places between where
-//! the sum of both fields is lowest (`sides`), once for each side of an obstacle. Each way's strip of facets is unfolded and pulled
+//! the sum of both fields is lowest (`sides`), once for each side of an obstacle; the best of them is then tried on the other
+//! side of each sharp corner that it passes. Each way's strip of facets is unfolded and pulled
 //! tight in it and in the strips around its bends (Xin & Wang 2007), and the shortest is taken. It is locally shortest on the
 //! facets as they are, the same length both ways, and within 2 % of the shortest in the tests, nearly always the shortest.
 //!
@@ -68,6 +69,12 @@ fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
     Ok(Box::new(Heat::new(&settings, &parts.object.mesh, parts.hand.fingertip_radius())?))
 }
 
+/// A vertex is a corner where its facets' angles differ from a full turn by more (rad): locally shortest paths on both sides of it can
+/// differ by per cents.
+const CORNER: f64 = 0.3;
+/// Times that a path is led around the other side of a corner.
+const MOST_CORNERS: usize = 8;
+
 /// Settings of [`Heat`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -110,6 +117,13 @@ pub struct Heat {
     field: Field,
 }
 
+/// A strip of facets, and the path that was pulled tight in it.
+#[derive(Default)]
+struct Way {
+    strip: Strip,
+    legs: Vec<Leg>,
+}
+
 /// What a path needs beside the answer; one a thread, overwritten by every call.
 #[derive(Default)]
 struct Workspace {
@@ -117,10 +131,9 @@ struct Workspace {
     phi: [Vec<f64>; 2],
     divergence: Vec<f64>,
     sides: Sides,
-    strip: Strip,
     half: Strip,
-    best: Vec<Leg>,
-    tried: Vec<Leg>,
+    best: Way,
+    tried: Way,
     room: Room,
 }
 
@@ -151,30 +164,51 @@ impl Heat {
     /// The shortest of the straightened paths down both fields and through the places between, in `workspace.best`.
     fn search(&self, workspace: &mut Workspace, [start, end]: [&(Spot, FinePoint); 2]) {
         let coarse = &self.rolling.polyhedron;
-        let Workspace { phi, divergence, sides, strip, half, best, tried, .. } = workspace;
+        let Workspace { phi, divergence, sides, half, best, tried, .. } = workspace;
         for (phi, from) in phi.iter_mut().zip([start, end]) {
             self.field.distances(&self.fine, &from.1, phi, divergence);
         }
         let [from_start, from_end] = [&phi[0][..], &phi[1][..]];
-        let only = self.fine.parent(start.1.facet);
-        self.descend(&start.1, &end.1, from_end, strip);
-        strip.straighten(coarse, (&start.0, &end.0), only, best);
-        let mut compare = |strip: &mut Strip| {
-            strip.straighten(coarse, (&start.0, &end.0), only, tried);
-            if length(tried, &end.0.contact) < length(best, &end.0.contact) {
-                std::mem::swap(tried, best);
-            }
-        };
-        self.descend(&end.1, &start.1, from_start, strip);
-        strip.reverse(coarse);
-        compare(strip);
+        best.legs.clear();
+        self.descend(&start.1, &end.1, from_end, &mut tried.strip);
+        self.compare([start, end], tried, best);
+        self.descend(&end.1, &start.1, from_start, &mut tried.strip);
+        tried.strip.reverse(coarse);
+        self.compare([start, end], tried, best);
         for place in sides.find(&self.fine, [from_start, from_end]) {
-            self.descend(&place, &start.1, from_start, strip);
-            strip.reverse(coarse);
+            self.descend(&place, &start.1, from_start, &mut tried.strip);
+            tried.strip.reverse(coarse);
             self.descend(&place, &end.1, from_end, half);
-            half.crossings.iter().for_each(|&crossing| strip.cross(coarse, crossing));
-            compare(strip);
+            half.crossings.iter().for_each(|&crossing| tried.strip.cross(coarse, crossing));
+            self.compare([start, end], tried, best);
         }
+        self.pass_corners([start, end], tried, best);
+    }
+
+    /// Leads the best path around the other side of corners as long as that makes it shorter.
+    fn pass_corners(&self, ends: [&(Spot, FinePoint); 2], tried: &mut Way, best: &mut Way) {
+        let coarse = &self.rolling.polyhedron;
+        for _ in 0..MOST_CORNERS {
+            let shorter = best.strip.corners(coarse, CORNER).into_iter().any(|corner| {
+                tried.strip.pass(coarse, &best.strip, corner);
+                self.compare(ends, tried, best)
+            });
+            if !shorter {
+                break;
+            }
+        }
+    }
+
+    /// Pulls the tried strip tight; it becomes the best if it is shorter.
+    fn compare(&self, [start, end]: [&(Spot, FinePoint); 2], tried: &mut Way, best: &mut Way) -> bool {
+        let only = self.fine.parent(start.1.facet);
+        tried.strip.straighten(&self.rolling.polyhedron, (&start.0, &end.0), only, &mut tried.legs);
+        let [ours, theirs] = [&*tried, &*best].map(|way| length(&way.legs, &end.0.contact));
+        let is_shorter = best.legs.is_empty() || ours < theirs * (1.0 - 1e-12);
+        if is_shorter {
+            std::mem::swap(tried, best);
+        }
+        is_shorter
     }
 }
 
@@ -202,7 +236,7 @@ impl SurfaceParam for Heat {
         }
         WORKSPACE.with_borrow_mut(|workspace| {
             self.search(workspace, [&start, &end]);
-            Ok(self.rolling.roll((&start.0, &end.0), &workspace.best, path, &mut workspace.room))
+            Ok(self.rolling.roll((&start.0, &end.0), &workspace.best.legs, path, &mut workspace.room))
         })
     }
 
