@@ -15,7 +15,7 @@ use regrasp_api::{JointKind, Mat3, Mesh, Pose, Primitive, Vec3};
 /// How thick (as a part of the object's radius) the wedges of an object are that is not convex.
 const WEDGE: f64 = 0.1;
 
-/// `STEM.mjcf.xml`, meshes as STL, `STEM.trajectory.csv`.
+/// `STEM.mjcf.xml`, meshes as STL, `STEM.controls.csv`.
 pub(crate) fn files(scene: &Scene<'_>, stem: &str) -> Vec<File> {
     let mut assets = Assets { stem, meshes: Vec::new(), wedges: Vec::new() };
     let object = assets.object(scene);
@@ -36,7 +36,7 @@ pub(crate) fn files(scene: &Scene<'_>, stem: &str) -> Vec<File> {
     files.extend(
         assets.meshes.into_iter().map(|(name, mesh)| File { name: format!("{name}.stl"), bytes: stl(&mesh) }),
     );
-    files.push(trajectory(scene, stem, true));
+    files.push(trajectory(scene, format!("{stem}.controls.csv"), true));
     files
 }
 

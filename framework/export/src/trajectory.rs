@@ -7,7 +7,7 @@ use regrasp_api::JointKind;
 /// Times (s), joints (rad; m) by the names of the model, the object's pose in H; with `targets`, also what the motors must aim at.
 ///
 /// At a time that occurs twice other fingers hold from then on: the forces pass over while everything rests.
-pub(crate) fn trajectory(scene: &Scene<'_>, stem: &str, targets: bool) -> File {
+pub(crate) fn trajectory(scene: &Scene<'_>, name: String, targets: bool) -> File {
     let mut head = vec!["time".to_owned()];
     head.extend(scene.names.joints.iter().flatten().cloned());
     head.extend(
@@ -30,7 +30,7 @@ pub(crate) fn trajectory(scene: &Scene<'_>, stem: &str, targets: bool) -> File {
         }
         table.line(&cells);
     }
-    File { name: format!("{stem}.trajectory.csv"), bytes: table.into_bytes() }
+    File { name, bytes: table.into_bytes() }
 }
 
 /// Finger and joint of every motor: all joints but those that another joint drives.
