@@ -101,6 +101,8 @@ export class Stage {
     /** A second, translucent object that goes where a simulation took it. */
     addReplay(geometry) {
         const material = new THREE.MeshStandardMaterial({ color: "#ff5da2", transparent: true, opacity: 0.42, depthWrite: false });
+        // Where both are in the same place, this one is in front.
+        Object.assign(material, { polygonOffset: true, polygonOffsetFactor: -4, polygonOffsetUnits: -4 });
         this.ghost = new THREE.Mesh(geometry, material);
         this.ghost.renderOrder = 5;
         this.layers.replay.push(this.ghost);
@@ -220,7 +222,6 @@ export class Stage {
         });
         this.marks.show(snapshot.contacts);
         this.trails.forEach((trail) => trail.show(snapshot.state ?? -1));
-        if (this.ghost) this.ghost.userData.active = snapshot.state !== undefined;
         this.stale = true;
     }
 
