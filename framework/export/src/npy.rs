@@ -37,6 +37,9 @@ fn motion(scene: &Scene<'_>, archive: &mut Archive) -> Result<(), ExportError> {
     archive.floats("object_orientation", &[t, 4], rows.iter().flat_map(|row| row.object().1))
 }
 
+/// One vector of a touch, where there is one.
+type Pick = fn(&Touch) -> Option<Vec3>;
+
 /// Fingertips, contacts and forces.
 fn contacts(scene: &Scene<'_>, archive: &mut Archive) -> Result<(), ExportError> {
     let rows: Vec<Row<'_>> = scene.rows().collect();
@@ -45,7 +48,7 @@ fn contacts(scene: &Scene<'_>, archive: &mut Archive) -> Result<(), ExportError>
     let (t, f) = (rows.len(), scene.origins.len());
     let tips = rows.iter().flat_map(|row| scene.fingers().map(|finger| scene.tip(row, finger)));
     archive.floats("tip_H", &[t, f, 3], tips.flat_map(|tip| three(Some(tip))))?;
-    let vectors: [(&str, fn(&Touch) -> Option<Vec3>); 5] = [
+    let vectors: [(&str, Pick); 5] = [
         ("contact_point_O", |touch| Some(touch.point_O)),
         ("contact_normal_O", |touch| Some(touch.normal_O)),
         ("contact_point_H", |touch| Some(touch.point_H)),
