@@ -1,6 +1,7 @@
 //! Hands: forward kinematics and Jacobians against independent formulas, inverse kinematics, limits, reach, bad descriptions.
 
 mod bad;
+mod driven;
 mod forward;
 mod hands;
 mod inverse;

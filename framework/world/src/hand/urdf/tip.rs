@@ -89,20 +89,20 @@ impl Tip {
         }
         let kept: Vec<Piece> =
             pieces.into_iter().filter_map(|piece| below(piece, &self.outward, height)).collect();
-        let thin = self.thinnest(&kept, radius);
-        if thin > radius - CLEARANCE {
+        let wide = self.widest(&kept, radius);
+        if wide > radius - CLEARANCE {
             notes.push(format!(
-                "the last link of `{name}` reaches {:.1} mm from its middle, the ball of its tip {:.1} mm: the sides of the finger touch an \
-                 object before the ball does; a larger `fingertip_radius` helps",
-                1e3 * thin,
-                1e3 * radius
+                "beside the ball of its tip ({:.1} mm) the last link of `{name}` reaches {:.1} mm from the middle: on flat faces the link can come \
+                 to touch first; a larger `fingertip_radius` helps",
+                1e3 * radius,
+                1e3 * wide
             ));
         }
         kept
     }
 
-    /// How far (m) the link reaches from the ball's centre, near the ball, in the direction across the finger in which it is thinnest.
-    fn thinnest(&self, pieces: &[Piece], radius: f64) -> f64 {
+    /// How far (m) the link reaches from the ball's centre, near the ball, in the direction across the finger in which it is widest.
+    fn widest(&self, pieces: &[Piece], radius: f64) -> f64 {
         let near = |p: &&Vec3| (*p - self.center).dot(&self.outward).abs() < radius;
         let corners =
             || pieces.iter().flat_map(|piece| piece.corners.iter().filter(near).map(|p| (p, piece.radius)));
@@ -113,7 +113,7 @@ impl Tip {
             let n = across * cos + other * sin;
             corners().map(|(p, radius)| n.dot(&(p - self.center)) + radius).fold(0.0, f64::max)
         };
-        (0..16).map(reach).fold(f64::INFINITY, f64::min)
+        (0..16).map(reach).fold(0.0, f64::max)
     }
 }
 
