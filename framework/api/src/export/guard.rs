@@ -10,7 +10,7 @@ use crate::{BuildError, Built, CallError, SettingsError};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// A plugin object and its id.
+/// A plugin object and its id, or an object of a service and the service's name.
 pub(super) struct Guard<T: ?Sized> {
     pub plugin: &'static str,
     /// Always there, until the guard is dropped.
@@ -59,8 +59,14 @@ impl<T: ?Sized> Drop for Guard<T> {
 /// Runs `call`; a panic becomes [`CallError::Panicked`].
 pub(super) fn caught<R>(plugin: &str, call: impl FnOnce() -> R) -> Result<R, CallError> {
     // What a panic may have left half changed (random stream, counts, path) is thrown away with the failed call.
-    catch_unwind(AssertUnwindSafe(call))
-        .map_err(|payload| CallError::Panicked { plugin: plugin.into(), message: message(payload.as_ref()) })
+    catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
+        let message = message(payload.as_ref());
+        // The payload may be any type of the plugin's, whose own end may panic.
+        if let Err(worse) = catch_unwind(AssertUnwindSafe(|| drop(payload))) {
+            std::mem::forget(worse);
+        }
+        CallError::Panicked { plugin: plugin.into(), message }
+    })
 }
 
 fn message(payload: &(dyn Any + Send)) -> String {

@@ -4,7 +4,7 @@
 //! could not cross it, and the process would be aborted. So the framework catches it on its own side: the call gets a harmless
 //! value, and the panic becomes the thread's fault ([`crate::report_fault`]).
 
-use super::guard::caught;
+use super::guard::{Guard, caught};
 use crate::{
     Admissible, Body, BodyPair, CallError, Clearance, ComponentId, Configuration, Context, EdgeId, EdgeKind,
     EdgeView, FingerIndex, FingerJoints, FingerModel, FingerSet, Fingertip, GraphView, Hand, LoneFinger,
@@ -78,11 +78,10 @@ impl LoneFinger for Blocked {
     }
 }
 
-struct GuardedLoneFinger<'a>(Box<dyn LoneFinger + 'a>);
-
-impl LoneFinger for GuardedLoneFinger<'_> {
+/// A plugin owns the object that it is handed: its end, too, runs inside the plugin's library.
+impl LoneFinger for Guard<dyn LoneFinger + '_> {
     fn free(&self, joints: &FingerJoints, tip: TipRule) -> Result<(), BodyPair> {
-        served("service/clearance", || self.0.free(joints, tip), || Err(UNKNOWN))
+        self.value(|finger| finger.free(joints, tip), || Err(UNKNOWN))
     }
 }
 
@@ -125,7 +124,7 @@ impl Clearance for GuardedService<'_, dyn Clearance + '_> {
         among: FingerSet,
     ) -> Box<dyn LoneFinger + 'a> {
         let lone = || -> Box<dyn LoneFinger + 'a> {
-            Box::new(GuardedLoneFinger(self.0.lone_finger(finger, resting, among)))
+            Box::new(Guard::new("service/clearance", self.0.lone_finger(finger, resting, among)))
         };
         served("service/clearance", lone, || Box::new(Blocked))
     }

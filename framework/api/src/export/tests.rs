@@ -168,6 +168,78 @@ fn guards_pass_on_every_method_of_every_trait() {
     }
 }
 
+/// A clearance whose lone fingers panic, at the call and at their end.
+struct Lonely;
+
+impl Clearance for Lonely {
+    fn object_free(&self, _: &Pose) -> Result<(), BodyPair> {
+        Ok(())
+    }
+    fn finger_free(&self, _: FingerIndex, _: &FingerJoints, _: &Pose, _: TipRule) -> Result<(), BodyPair> {
+        Ok(())
+    }
+    fn fingers_free(
+        &self,
+        _: (FingerIndex, &FingerJoints),
+        _: (FingerIndex, &FingerJoints),
+    ) -> Result<(), BodyPair> {
+        Ok(())
+    }
+    fn configuration_free(&self, _: &Configuration, _: FingerSet, _: bool) -> Result<(), BodyPair> {
+        Ok(())
+    }
+    fn lone_finger<'a>(
+        &'a self,
+        _: FingerIndex,
+        _: &'a Configuration,
+        _: FingerSet,
+    ) -> Box<dyn LoneFinger + 'a> {
+        Box::new(Panics)
+    }
+    fn distances(&self, _: &Configuration, _: f64) -> Vec<PairDistance> {
+        Vec::new()
+    }
+}
+
+impl LoneFinger for Panics {
+    fn free(&self, _: &FingerJoints, _: TipRule) -> Result<(), BodyPair> {
+        panic!("no finger")
+    }
+}
+
+/// A plugin drops a lone finger inside its own library, which a panic of the framework must not enter.
+#[test]
+fn a_lone_finger_is_guarded_to_its_end() {
+    let joints = FingerJoints::zeros(1);
+    let resting = Configuration {
+        X_HO: Pose::identity(),
+        joints: PerFinger::filled(1, joints),
+        contacts: PerFinger::filled(1, None),
+    };
+    let clearance = GuardedService::<dyn Clearance>(&Lonely);
+    let finger = clearance.lone_finger(FingerIndex(0), &resting, FingerSet::EMPTY);
+    assert!(finger.free(&joints, TipRule::Touches).is_err(), "not known to be free");
+    let fault = CallError::Panicked { plugin: "service/clearance".into(), message: "no finger".into() };
+    assert_eq!(take_fault(), Some(fault));
+    drop(finger);
+    assert_eq!(take_fault(), None, "the end of an object spoils no call");
+}
+
+/// A payload whose own end panics.
+struct Trap;
+
+impl Drop for Trap {
+    fn drop(&mut self) {
+        panic!("a payload's end");
+    }
+}
+
+#[test]
+fn a_panics_payload_may_panic_too() {
+    let built = guarded::<dyn ContactModel>("contact-model/trap", || std::panic::panic_any(Trap));
+    assert!(built.err().is_some_and(|error| error.to_string().contains("(no message)")));
+}
+
 struct NoHand;
 impl Hand for NoHand {
     fn finger_count(&self) -> usize {
