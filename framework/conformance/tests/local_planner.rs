@@ -221,7 +221,8 @@ impl Liar {
     fn spoil(&self, task: &Task<'_>, path: &mut Path, reached: &mut Reached, context: &mut Context<'_>) {
         let last = path.states.len() - 1;
         let whole = reached.stop.is_none();
-        let finger = (0..4).map(FingerIndex).find(|&f| path.states[0].joints[f] != reached.end.joints[f]);
+        let moves = |f: &FingerIndex| path.states[0].joints[*f] != reached.end.joints[*f];
+        let finger = path.states[0].joints.fingers().find(moves);
         match self.lie {
             Lie::ForgetsTheStart if last > 1 => drop(path.states.remove(0)),
             Lie::HalfIsWhole if whole => reached.fraction = 0.5,
@@ -249,10 +250,11 @@ impl Liar {
             Lie::LetsGo if last > 2 => {
                 let q = &mut path.states[last / 2];
                 let holds = |f: &FingerIndex| {
-                    let rest = task.grasp(q, q.holding().without(*f));
+                    // As while the object moves, when soft contacts may spin.
+                    let rest = task.transfer_grasp(q, q.holding().without(*f));
                     EdgeClosure.test(&rest, &mut Hint::default(), context).unwrap().is_stable()
                 };
-                if let Some(finger) = (0..4).map(FingerIndex).find(holds) {
+                if let Some(finger) = q.holding().iter().find(holds) {
                     q.contacts[finger] = None;
                 }
             }

@@ -75,7 +75,7 @@ impl Liar {
                 other.contacts[FingerIndex(3)] = None;
                 other.joints[FingerIndex(3)] = task.hand.finger(FingerIndex(3)).rest;
             }
-            Lie::BendsAFreeFinger if q.holding().len() == 3 => {
+            Lie::BendsAFreeFinger if q.contacts[FingerIndex(1)].is_none() => {
                 other.joints[FingerIndex(1)][0] = task.hand.finger(FingerIndex(1)).joints[0].upper + 1e-3;
             }
             Lie::MovesThePose if matches!(pose, PoseRequest::At(_)) => {

@@ -1,4 +1,4 @@
-//! The contact model and the node predicate of the kit's tasks.
+//! The contact models and the node predicate of the kit's tasks.
 
 use regrasp_api::{
     Admissible, CallError, Cone, Configuration, Contact, ContactModel, Context, FingerIndex, FingerSet, Hint,
@@ -16,6 +16,23 @@ impl ContactModel for RoundCones {
 
     fn fewest_contacts(&self) -> usize {
         3
+    }
+}
+
+/// Soft contacts: two of them can hold.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SoftCones;
+
+/// Torsional friction radius (m) of [`SoftCones`]: under uniform pressure that of a patch of 8 mm radius with μ = 0.8.
+const GAMMA: f64 = 0.004;
+
+impl ContactModel for SoftCones {
+    fn cone(&self, _contact: &Contact, mu: f64) -> Cone<'_> {
+        Cone::Elliptic { mu, gamma: GAMMA }
+    }
+
+    fn fewest_contacts(&self) -> usize {
+        2
     }
 }
 
@@ -53,7 +70,9 @@ impl Admissible for Leavable {
         q: &Configuration,
         context: &mut Context<'_>,
     ) -> Result<Option<Reason>, CallError> {
-        let grasp = task.grasp(q, q.holding());
+        // Where all fingers hold, the object is to be moved: contacts may spin then.
+        let all = q.holding().len() == q.contacts.len();
+        let grasp = if all { task.transfer_grasp(q, q.holding()) } else { task.grasp(q, q.holding()) };
         let stable = task.stability.test(&grasp, &mut Hint::default(), context)?.is_stable();
         Ok(if stable { None } else { Some(Reason::Stability) })
     }

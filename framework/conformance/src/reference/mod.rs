@@ -16,7 +16,7 @@ mod steps;
 mod surface;
 mod walk;
 
-pub use admissible::{Leavable, RoundCones};
+pub use admissible::{Leavable, RoundCones, SoftCones};
 pub use closure::{Closure, EdgeClosure, closure};
 pub(crate) use closure::{center_and_length, may_give};
 pub use fine_rolling::FineRolling;

@@ -70,13 +70,13 @@ pub(super) fn build(subject: &Subject<'_>, bench: &Bench) -> Finding<Box<dyn Clo
     Ok(build(&subject.demands.settings, &bench.parts())?)
 }
 
-fn benches() -> [&'static Bench; 3] {
-    [Bench::free_sphere(), Bench::hand_sphere(), Bench::hand_ellipsoid()]
+fn benches() -> [&'static Bench; 4] {
+    [Bench::free_sphere(), Bench::hand_sphere(), Bench::hand_ellipsoid(), Bench::soft_sphere()]
 }
 
 /// Which fingers hold in one sample or another.
-fn holdings() -> [FingerSet; 2] {
-    [FingerSet::first(4), FingerSet::first(4).without(FingerIndex(1))]
+fn holdings(bench: &Bench) -> [FingerSet; 2] {
+    [bench.fingers(), bench.fingers().without(FingerIndex(1))]
 }
 
 /// A configuration of the bench, by the reference sampler.
@@ -84,7 +84,7 @@ fn somewhere(bench: &Bench, key: u64) -> Configuration {
     let found = RejectionSampler.sample(
         &bench.task(),
         PoseRequest::At(Bench::center()),
-        FingerSet::first(4),
+        bench.fingers(),
         &mut context(key),
     );
     found.expect("nothing interrupts").expect("the kit's hands hold the kit's objects")
@@ -104,7 +104,7 @@ fn on_samples(
             PoseRequest::Near { configuration: &near, radius: 3e-3, angle: 0.2 },
         ];
         for (i, request) in requests.iter().enumerate() {
-            for (k, holding) in holdings().into_iter().enumerate() {
+            for (k, holding) in holdings(bench).into_iter().enumerate() {
                 for key in 0..2 {
                     let mut context = context(key + 10 * (i + 10 * k) as u64);
                     if let Some(q) = sampler.sample(&bench.task(), *request, holding, &mut context)? {
@@ -123,7 +123,7 @@ fn succeeds(subject: &Subject<'_>) -> Finding {
         let mut found = 0;
         for key in 0..10 {
             let request = if key % 2 == 0 { PoseRequest::Anywhere } else { PoseRequest::At(Bench::center()) };
-            let q = sampler.sample(&bench.task(), request, FingerSet::first(4), &mut context(key))?;
+            let q = sampler.sample(&bench.task(), request, bench.fingers(), &mut context(key))?;
             found += usize::from(q.is_some());
         }
         let hand = &bench.world.hand.description().name;
@@ -194,7 +194,7 @@ fn varies(subject: &Subject<'_>) -> Finding {
     let mut found: Vec<Configuration> = Vec::new();
     for key in 0..8 {
         let request = PoseRequest::At(Bench::center());
-        found.extend(sampler.sample(&bench.task(), request, FingerSet::first(4), &mut context(key))?);
+        found.extend(sampler.sample(&bench.task(), request, bench.fingers(), &mut context(key))?);
     }
     let alike = found.windows(2).filter(|pair| pair[0] == pair[1]).count();
     ensure(alike == 0, || format!("{alike} of {} samples of different streams are alike", found.len()))
@@ -241,7 +241,7 @@ fn counts_reasons(subject: &Subject<'_>) -> Finding {
     for bench in benches() {
         let sampler = build(subject, bench)?;
         let (mut context, far) = (context(0), PoseRequest::At(Pose::translation(0.0, 0.0, 1.0)));
-        let found = sampler.sample(&bench.task(), far, FingerSet::first(4), &mut context)?;
+        let found = sampler.sample(&bench.task(), far, bench.fingers(), &mut context)?;
         ensure(found.is_none(), || format!("a sample a metre away: {found:?}"))?;
         let counted: u64 = Reason::ALL.iter().map(|&r| context.tally.rejections(Slot::Sampler, r)).sum();
         ensure(counted > 0, || "finds nothing and counts no reason".into())?;
@@ -254,7 +254,7 @@ fn counted(subject: &Subject<'_>) -> Finding {
     let sampler = build(subject, bench)?;
     for request in [PoseRequest::Anywhere, PoseRequest::At(Pose::translation(0.0, 0.0, 1.0))] {
         let mut context = context(0);
-        sampler.sample(&bench.task(), request, FingerSet::first(4), &mut context)?;
+        sampler.sample(&bench.task(), request, bench.fingers(), &mut context)?;
         counted_once(&context, Slot::Sampler)?;
     }
     Ok(())
@@ -265,7 +265,7 @@ fn interrupt(subject: &Subject<'_>) -> Finding {
     let sampler = build(subject, bench)?;
     for request in [PoseRequest::Anywhere, PoseRequest::At(Pose::translation(0.0, 0.0, 1.0))] {
         let mut context = Context::new(random(0), &Always);
-        let found = sampler.sample(&bench.task(), request, FingerSet::first(4), &mut context);
+        let found = sampler.sample(&bench.task(), request, bench.fingers(), &mut context);
         ensure(matches!(found, Err(CallError::Interrupted)), || format!("goes on: {found:?}"))?;
     }
     Ok(())
@@ -277,7 +277,7 @@ fn sampler_pure(subject: &Subject<'_>) -> Finding {
         pure(4, |i| {
             let mut context = context(i as u64);
             let found =
-                sampler.sample(&bench.task(), PoseRequest::Anywhere, holdings()[i % 2], &mut context)?;
+                sampler.sample(&bench.task(), PoseRequest::Anywhere, holdings(bench)[i % 2], &mut context)?;
             Ok((found, context.tally))
         })?;
     }

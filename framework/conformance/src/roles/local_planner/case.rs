@@ -57,7 +57,7 @@ fn benches() -> [&'static Bench; 4] {
 /// A configuration with all fingers in contact, by the reference sampler.
 fn somewhere(bench: &Bench, key: u64) -> Configuration {
     let pose = PoseRequest::At(Bench::center());
-    let found = RejectionSampler.sample(&bench.task(), pose, FingerSet::first(4), &mut context(key));
+    let found = RejectionSampler.sample(&bench.task(), pose, bench.fingers(), &mut context(key));
     found.expect("nothing interrupts").expect("the kit's hands hold the kit's objects")
 }
 
@@ -96,6 +96,11 @@ fn transfers() -> Vec<Case> {
         add(open, ring(open), Vec3::new(0.0, 0.0, 0.09), Vec3::zeros(), false);
         add(walled, ring(walled), Vec3::new(0.02, 0.0, 0.0), Vec3::zeros(), false);
         add(open, slack(open), Vec3::new(0.0, 2e-3, 1e-3), Vec3::zeros(), false);
+    }
+    let soft = Bench::soft_sphere();
+    for (key, easy) in [(6, true), (14, false)] {
+        let (shift, turn) = if easy { (1e-3, 0.03) } else { (5e-3, 0.4) };
+        add(soft, somewhere(soft, key), random.direction() * shift, random.direction() * turn, easy);
     }
     cases
 }
@@ -159,6 +164,12 @@ fn grasps() -> Vec<Case> {
     let (from, shift) = (slack(free), Vec3::new(0.0, 4e-3, 4e-3));
     let to = closed(free, turned(&from.X_HO, shift, Vec3::zeros()), &from.contacts).expect("it is near");
     cases.push(Case { bench: free, from, goal: Goal::Grasp(to.into()), easy: false });
+    let soft = Bench::soft_sphere();
+    let (from, far) = (somewhere(soft, 24), somewhere(soft, 44));
+    let to = slid(soft, &from, 1e-3, 2e-3, &mut random);
+    for (to, easy) in [(to, true), (far, false)] {
+        cases.push(Case { bench: soft, from: from.clone(), goal: Goal::Grasp(to.into()), easy });
+    }
     cases
 }
 
@@ -204,6 +215,8 @@ fn regrasps() -> Vec<Case> {
     let from = slack(free);
     let to = slid(free, &from, 0.0, 6e-3, &mut random);
     cases.push(regrasp(free, from, &to, 1, false));
+    // Two soft contacts hold while the third moves.
+    cases.extend((0..20).find_map(|i| short_regrasp(Bench::soft_sphere(), 130 + i, &mut random)));
     cases
 }
 
@@ -211,9 +224,10 @@ fn regrasps() -> Vec<Case> {
 fn short_regrasp(bench: &'static Bench, key: u64, random: &mut Random) -> Option<Case> {
     let from = somewhere(bench, key);
     let task = bench.task();
-    let finger = (0..4)
-        .map(FingerIndex)
-        .find(|&finger| closure(&task.grasp(&from, from.holding().without(finger))) == Closure::Closed)?;
+    let leaves = |finger: &FingerIndex| {
+        closure(&task.grasp(&from, from.holding().without(*finger))) == Closure::Closed
+    };
+    let finger = bench.fingers().iter().find(leaves)?;
     let contact = bench.surface.walk(from.contacts[finger].as_ref()?, &random.direction(), 6e-3);
     let p_HF = to_hand(&from.X_HO, &contact.tip_center(bench.radius()));
     let joints = task.hand.inverse(finger, &p_HF, &from.joints[finger])?;
