@@ -108,7 +108,7 @@ pub(crate) struct ScaledGrasp {
 }
 
 impl ScaledGrasp {
-    /// The contacts of `grasp` except those of `lifted`; `plugin` is named where a cone is not elliptic.
+    /// The contacts of `grasp` except those of `lifted`; where a cone is not elliptic `plugin` is named, and what to use in place of it.
     pub fn gather(
         grasp: &Grasp<'_>,
         lifted: Option<FingerIndex>,
@@ -183,14 +183,23 @@ impl ScaledGrasp {
     }
 }
 
+/// What to use where cones are polyhedral; the tests that take them are no substitute for `equilibrium`, which alone weighs a load.
+fn instead(plugin: &str) -> &'static str {
+    if plugin == crate::equilibrium::ID {
+        "use an elliptic contact model, such as `contact-model/pcwf` or `contact-model/soft-finger`; `stability-test/linearised` and \
+         `stability-test/wrench-ball` take polyhedral cones, but ask for closure, whatever the load"
+    } else {
+        "use an elliptic contact model, or `stability-test/linearised` or `stability-test/wrench-ball`, which take polyhedral cones as \
+         they are"
+    }
+}
+
 fn unscaled(contact: &GraspContact<'_>, plugin: &'static str) -> Result<ScaledContact, CallError> {
     match contact.cone {
         Cone::Elliptic { mu, gamma } => Ok(ScaledContact { r: contact.p_OC, n: -contact.n_O, mu, gamma }),
         Cone::Polyhedral(_) => Err(CallError::Unsupported {
             plugin: plugin.to_owned(),
-            reason: "it decides elliptic cones exactly and takes no polyhedral ones; use an elliptic contact model, or \
-                     `stability-test/linearised`"
-                .to_owned(),
+            reason: format!("it decides elliptic cones exactly and takes no polyhedral ones; {}", instead(plugin)),
         }),
     }
 }

@@ -6,6 +6,7 @@ use regrasp_api::{
     CallError, Certificate, Cone, ConeEdge, Context, FingerIndex, Grasp, GraspContact, Hint, Random,
     Stability, StabilityTest, Uninterrupted, Vec3,
 };
+use regrasp_stability_tests::{Equilibrium, EquilibriumSettings};
 use support::{
     Touch, assess, check_certificate, force_closure, grasp_of, moved, socp, touch, verdict, with_context,
 };
@@ -147,12 +148,17 @@ fn polyhedral_cones_are_refused_with_what_to_use() {
         cone: Cone::Polyhedral(&edges),
     });
     let mut context = Context::new(Random::from_key(0, 0, 0, 0), &Uninterrupted);
-    let tests: [&dyn StabilityTest; 2] = [&force_closure(), &socp()];
-    for (test, id) in tests.into_iter().zip(["stability-test/force-closure", "stability-test/socp"]) {
+    let equilibrium = Equilibrium::new(EquilibriumSettings::default(), 0.1, Vec3::zeros()).unwrap();
+    let tests: [(&dyn StabilityTest, _, _); 3] = [
+        (&force_closure(), "stability-test/force-closure", "which take polyhedral cones"),
+        (&socp(), "stability-test/socp", "which take polyhedral cones"),
+        (&equilibrium, "stability-test/equilibrium", "ask for closure, whatever the load"),
+    ];
+    for (test, id, instead) in tests {
         match test.test(&grasp, &mut Hint::default(), &mut context) {
             Err(CallError::Unsupported { plugin, reason }) => {
                 assert_eq!(plugin, id);
-                assert!(reason.contains("elliptic contact model"), "{reason}");
+                assert!(reason.contains("elliptic contact model") && reason.contains(instead), "{reason}");
             }
             other => panic!("{other:?}"),
         }

@@ -1,5 +1,9 @@
 //! A surface: the facets of a convex object, everything by brute force.
 //!
+//! An object that is not convex is refused: a fingertip could not reach every
+//! point of it, the plane of a facet that faces it would not tell which is closest, and paths would have to go round what the ball cannot
+//! enter (`surface/geodesic` does all that).
+//!
 //! Shortest paths run over points on the edges (Lanthier, Maheshwari, Sack, "Approximating weighted shortest paths on polyhedral surfaces", SoCG
 //! 1997), found by Dijkstra's algorithm; with few points an edge they are some percent longer than the shortest.
 
@@ -317,7 +321,7 @@ impl SurfaceParam for Facets {
 pub const ENTRY: Entry = Entry {
     id: "surface/template",
     slots: &[Slot::Surface],
-    summary: "facets of a convex object by brute force, paths over points on the edges",
+    summary: "facets of a convex object (others are refused) by brute force, paths over points on the edges",
     references: &[
         "Lanthier, Maheshwari, Sack, Approximating weighted shortest paths on polyhedral surfaces, SoCG 1997",
     ],
