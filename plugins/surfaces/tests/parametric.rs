@@ -108,6 +108,8 @@ fn objects_without_closed_form_are_refused_with_what_to_use() {
     };
     refused(&ObjectModel::new(mesh.clone(), None, 0.1, 0.8));
     refused(&object(Primitive::Sphere { radius: 0.03 }, mesh));
+    let semi_axes = Vec3::new(0.04, 0.03, 0.003);
+    refused(&object(Primitive::Ellipsoid { semi_axes }, meshes::ellipsoid(semi_axes, 3)));
 }
 
 #[test]
@@ -293,6 +295,29 @@ fn geodesics_of_spheroids_are_those_of_the_quadrature() {
             let truth = on_spheroid(a, c, azimuth, low).0;
             assert!((found.points[middle] - truth).norm() < 1e-7 * a, "{:?} {truth:?}", found.points[middle]);
         }
+    }
+}
+
+#[test]
+fn over_the_rim_of_a_flat_spheroid_chains_take_no_short_cut_through_it() {
+    let (a, c) = (0.04, 0.002);
+    let form = ClosedForm::new(&Primitive::Ellipsoid { semi_axes: Vec3::new(a, a, c) });
+    let speed = |x: f64| (a * x.sin()).hypot(c * x.cos());
+    let at = |x: f64, turn: f64| Vec3::new(a * x.cos() * turn.cos(), a * x.cos() * turn.sin(), c * x.sin());
+    for (from, to) in [(0.9, -0.9), (1.0, -0.5), (0.3, -1.1)] {
+        let truth = integral(to, from, speed);
+        let length = curve(&form, &at(from, 0.7), &at(to, 0.7)).length;
+        assert!((length / truth - 1.0).abs() < 1e-6, "{length} instead of {truth}");
+    }
+    // From one side to the other anywhere: the points follow each other at equal distances.
+    let form = ClosedForm::new(&Primitive::Ellipsoid { semi_axes: Vec3::new(a, a, a / 4.0) });
+    let at = |x: f64, turn: f64| form.outward(&at(x, turn));
+    let mut random = Random::from_key(10, 0, 0, 0);
+    for _ in 0..60 {
+        let [x, y, s, t] = [(); 4].map(|()| random.unit());
+        let found = curve(&form, &at(0.1 + 1.4 * x, 3.0 * s), &at(-0.1 - 1.4 * y, 3.0 * t));
+        let sum: f64 = found.points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        assert!(sum < found.length * (1.0 + 1e-9) && sum > 0.95 * found.length, "{sum} {}", found.length);
     }
 }
 

@@ -19,7 +19,7 @@
 //!
 //! # When to use it
 //! Where paths should be those of the smooth object rather than of its facets: their course does not depend on how the mesh is cut.
-//! A mesh without closed form is refused. `false` as with `surface/geodesic`: an end that cannot be touched, or a fingertip that would
+//! A mesh without closed form is refused, and so is an ellipsoid flatter than 1 : 4. `false` as with `surface/geodesic`: an end that cannot be touched, or a fingertip that would
 //! have to leap (torus).
 
 mod cuboid;
@@ -37,8 +37,9 @@ use crate::lift::Leg;
 use crate::rolling::Rolling;
 use facets::{Corridor, Facets};
 use regrasp_api::{
-    Build, BuildError, Built, CallError, Contact, Context, Entry, ObjectModel, Parts, Projection, Random,
-    Settings, SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, check_range, check_settings, inventory,
+    Build, BuildError, Built, CallError, Contact, Context, Entry, ObjectModel, Parts, Primitive, Projection,
+    Random, Settings, SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, check_range, check_settings,
+    inventory,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -64,6 +65,9 @@ fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
     let settings = ParametricSettings::from_json(json)?;
     Ok(Box::new(Parametric::new(&settings, parts.object, parts.hand.fingertip_radius())?))
 }
+
+/// The middle semi-axis of an ellipsoid over its shortest, at most.
+const FLATTEST: f64 = 4.0;
 
 /// Curves tried, each half as long again, until the way over the facets is as long as a walk.
 const MOST_TRIES: usize = 8;
@@ -134,6 +138,9 @@ impl Parametric {
         };
         let primitive =
             object.primitive.ok_or_else(|| refused("the object is a mesh without closed form"))?;
+        if is_flat(&primitive) {
+            return Err(refused("ellipsoids flatter than 1 : 4 bend too sharply at their rim"));
+        }
         let form = ClosedForm::new(&primitive);
         let facets = Facets::new(&primitive, &form, &object.mesh)
             .ok_or_else(|| refused("the object's mesh does not lie on the primitive that it stands for"))?;
@@ -173,6 +180,14 @@ impl Parametric {
     fn surfaces(&self) -> (&Rolling, &Facets, &ClosedForm) {
         (&self.rolling, &self.facets, &self.form)
     }
+}
+
+/// Whether a primitive is a disc-like ellipsoid on which the shooting may miss.
+fn is_flat(primitive: &Primitive) -> bool {
+    let Primitive::Ellipsoid { semi_axes } = primitive else { return false };
+    let mut axes: [f64; 3] = (*semi_axes).into();
+    axes.sort_by(f64::total_cmp);
+    axes[1] > FLATTEST * axes[0]
 }
 
 impl SurfaceParam for Parametric {

@@ -4,13 +4,13 @@ use super::Smooth;
 use regrasp_api::{Vec3, any_orthogonal};
 
 /// Links of a chain; even, so that its middle is one of its points.
-const LINKS: usize = 24;
+const LINKS: usize = 16;
 /// Links of a chain that is only measured.
 const ROUGH: usize = 12;
 /// Newton steps; half a dozen are common.
 const STEPS: usize = 40;
 /// The chain is tight when no point moves by more than this share of a link.
-const TIGHT: f64 = 1e-5;
+const TIGHT: f64 = 1e-3;
 
 /// Points from one end to the other.
 #[derive(Clone, Debug)]
@@ -65,7 +65,7 @@ impl Chain {
             let shorter = (0..10).find_map(|_| {
                 let next = chain.moved(surface, &moves, share);
                 share /= 2.0;
-                (next.energy() <= energy).then_some(next)
+                (next.energy() <= energy && next.holds(surface)).then_some(next)
             });
             let Some(next) = shorter else { break };
             (chain, energy) = (next.clone(), next.energy());
@@ -86,6 +86,11 @@ impl Chain {
         let (n, first) = (surface.normal(&self.0[0]), self.0[1] - self.0[0]);
         let flat = first - n * n.dot(&first);
         flat.try_normalize(0.0).unwrap_or_else(|| any_orthogonal(&n))
+    }
+
+    /// Whether no link is a short cut through a thin solid.
+    fn holds(&self, surface: &impl Smooth) -> bool {
+        self.0.windows(2).all(|pair| surface.joins(&pair[0], &pair[1]))
     }
 
     fn energy(&self) -> f64 {

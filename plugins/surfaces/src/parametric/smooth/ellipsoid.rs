@@ -39,8 +39,17 @@ impl Smooth for Ellipsoid {
         (self.semi_axes.product() * self.gradient(p).norm_squared()).powi(-2)
     }
 
+    fn pace(&self, p: &Vec3, along: &Vec3) -> f64 {
+        // The change of the gradient over its size: besides the normal's turning, how the curvature changes.
+        self.gradient(along).norm() / self.gradient(p).norm() + self.curvature(p).sqrt()
+    }
+
     fn onto(&self, p: &Vec3) -> Vec3 {
         self.squeezed(p).component_mul(&self.semi_axes)
+    }
+
+    fn joins(&self, p: &Vec3, q: &Vec3) -> bool {
+        self.squeezed(p).dot(&self.squeezed(q)) > 0.4
     }
 
     fn core(&self, _: &Vec3) -> Vec3 {

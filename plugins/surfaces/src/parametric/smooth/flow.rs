@@ -4,10 +4,8 @@ use super::Smooth;
 use crate::parametric::form::Curve;
 use regrasp_api::Vec3;
 
-/// A step's length times how fast normal and spread turn: fourth order leaves 2e-7 of the length on flat ellipsoids, else far less.
+/// A step's length times the surface's pace: fourth order leaves 2e-7 of the length on flat ellipsoids, else far less.
 const STEP: f64 = 0.02;
-/// The fewest steps of a geodesic.
-const FEWEST: f64 = 8.0;
 
 /// A point of a geodesic and the unit tangent there.
 #[derive(Clone, Copy, Debug)]
@@ -79,12 +77,17 @@ impl Spread {
     }
 }
 
-/// Follows a geodesic for a length (m), in steps as short as the surface's turning asks for.
-pub(super) fn run(surface: &impl Smooth, at: &mut Heading, mut spread: Option<&mut Spread>, length: f64) {
+/// Follows a geodesic for a length (m), in steps as short as the surface's pace asks for, times `stretch`.
+pub(super) fn run(
+    surface: &impl Smooth,
+    at: &mut Heading,
+    mut spread: Option<&mut Spread>,
+    length: f64,
+    stretch: f64,
+) {
     let mut left = length;
     while left > 0.0 {
-        let turning = surface.turning(&at.p, &at.along).norm_squared() + surface.curvature(&at.p).abs();
-        let h = (STEP / turning.sqrt()).min(length / FEWEST);
+        let h = stretch * STEP / surface.pace(&at.p, &at.along);
         // No tiny last step.
         let h = if left < 1.5 * h { left } else { h };
         step(surface, at, spread.as_deref_mut(), h);
@@ -104,7 +107,7 @@ pub(super) fn draw(
     let mut at = Heading::new(surface, from, along);
     let count = (length / spacing).ceil().max(1.0);
     for _ in 0..count as usize {
-        run(surface, &mut at, None, length / count);
+        run(surface, &mut at, None, length / count, 1.0);
         curve.points.push(at.p);
     }
     curve.length += length;

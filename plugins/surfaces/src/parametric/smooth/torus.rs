@@ -64,8 +64,19 @@ impl Smooth for Torus {
         frame.cos / (self.tube * frame.out)
     }
 
+    fn pace(&self, p: &Vec3, along: &Vec3) -> f64 {
+        let frame = self.frame(p);
+        let (around, upward) = (frame.around.dot(along) / frame.out, frame.upward.dot(along) / self.tube);
+        around.hypot(upward) + (frame.cos / (self.tube * frame.out)).abs().sqrt()
+    }
+
     fn onto(&self, p: &Vec3) -> Vec3 {
         self.core(p) + self.frame(p).normal * self.tube
+    }
+
+    fn joins(&self, p: &Vec3, q: &Vec3) -> bool {
+        let [a, b] = [p, q].map(|p| self.angles(p));
+        (0..2).all(|k| turn(a[k], b[k]).abs() < PI / 2.5)
     }
 
     fn core(&self, p: &Vec3) -> Vec3 {
