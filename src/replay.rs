@@ -11,8 +11,10 @@ driven by a motor with a stiffness, a damping and the joint's effort limit; it f
 program chooses in every state, inside the friction cones and the efforts. Nothing looks at where the object is. Between two segments the forces pass over to the fingers that hold next.\n\n\
 Reported for each segment: the largest deviation of the object from the plan, the largest slip of a fingertip, where the object is at the segment's end, and what went wrong. The object has \
 arrived if it is within 5 mm and 5° of the plan's end. It counts as dropped where it is 20 mm or 30° off; the replay ends there.\n\n\
+Plans rely on force closure with a friction that is a little below the object's, and some of their grasps need forces that the joints do not have, or that nearly slip. Plans that hold better: \
+`regrasp plan --use stability-test=equilibrium`, or `friction_margin = 0.9` under [limits.resolution] in the scenario.\n\n\
 Exit codes: 0 the object arrives; 2 bad input; 4 it does not.\n\n\
-Examples:\n  regrasp replay plan.json\n  regrasp replay plan.json --slowdown 2 --mass-scale 1.5\n  regrasp replay plan.json -o replay.json")]
+Examples:\n  regrasp replay plan.json\n  regrasp replay plan.json --slowdown 4 --mass-scale 1.5\n  regrasp replay plan.json -o replay.json")]
 pub struct ReplayArgs {
     /// A plan file.
     pub plan: PathBuf,
@@ -31,23 +33,32 @@ pub struct ReplayArgs {
     /// Multiply the motors' stiffness by this, up to 1000; at 1 it is 10 N·m/rad, or 1000 N/m in prismatic joints.
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number::<0, 1000>)]
     pub stiffness_scale: f64,
-    /// Multiply the plan's times by this, 0.1 to 100: more than 1 is slower.
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number::<0, 100>)]
+    /// Multiply the plan's times by this, 0.1 to 100: plans are as fast as the joints can be, and grips balance the weight alone.
+    #[arg(long, value_name = "X", default_value_t = 2.0, value_parser = number::<0, 100>)]
     pub slowdown: f64,
     /// Most normal force of one contact (N); by default the greater of 2 N and three times the object's weight.
     #[arg(long, value_name = "N", value_parser = number::<0, 10_000>)]
     pub grip: Option<f64>,
     /// Gravity in the hand's frame (m/s²), such as 0,0,9.81; by default the scenario's.
-    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 3, allow_hyphen_values = true, value_parser = number::<-1000, 1000>)]
-    pub gravity: Option<Vec<f64>>,
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
+    pub gravity: Option<[f64; 3]>,
 }
 
 /// A finite number in `LOW..=HIGH`; the simulation has narrower ranges for some.
 fn number<const LOW: i32, const HIGH: i32>(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
+    match text.trim().parse::<f64>() {
         Ok(number) if (f64::from(LOW)..=f64::from(HIGH)).contains(&number) => Ok(number),
         _ => Err(format!("it must be a number in {LOW}..={HIGH}")),
     }
+}
+
+/// Three numbers with commas between them.
+fn vector(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Result<Vec<f64>, String> = text.split(',').map(number::<-1000, 1000>).collect();
+    let numbers = numbers.map_err(|reason| format!("each of its three numbers: {reason}"))?;
+    numbers
+        .try_into()
+        .map_err(|_| "it must be three numbers with commas between them, such as 0,0,-9.81".into())
 }
 
 #[cfg(not(feature = "rapier"))]
@@ -62,3 +73,17 @@ pub use simulated::run;
 
 #[cfg(feature = "rapier")]
 mod simulated;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_are_three_finite_numbers() {
+        assert_eq!(vector("0,0,-9.81"), Ok([0.0, 0.0, -9.81]));
+        assert_eq!(vector("1, 2, 3"), Ok([1.0, 2.0, 3.0]));
+        for bad in ["1,2", "1,2,3,4", "1,2,x", "", "nan,0,0", "1e9,0,0"] {
+            assert!(vector(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -60,17 +60,22 @@ fn plans_whose_grasps_hold_the_weight_arrive() {
         assert_eq!(report.stages.len(), plan.segments.len());
         assert!(report.distance() < 5e-3 && report.angle() < 5_f64.to_radians(), "{}", report.distance());
         assert!(report.stages.iter().all(|stage| stage.margin > 0.0));
-        let end = report.stages.last().map(|stage| stage.end_distance);
-        let goal = regrasp::plan::motion(&plan.segments)
-            .unwrap()
-            .segments
-            .last()
-            .unwrap()
-            .states
-            .last()
-            .unwrap()
-            .X_HO;
-        assert_eq!(end, Some((report.X_HO.translation.vector - goal.translation.vector).norm()));
+        let motion = regrasp::plan::motion(&plan.segments).unwrap();
+        let goal = motion.segments.last().and_then(|segment| segment.states.last()).unwrap().X_HO;
+        let (last, moved) = (report.stages.last().unwrap(), report.X_HO.translation.vector);
+        assert_eq!(last.end_distance, (moved - goal.translation.vector).norm());
+        // A pose for each state, and one after the object was held for a while.
+        assert!(
+            report
+                .stages
+                .iter()
+                .zip(&motion.segments)
+                .all(|(stage, segment)| stage.track.len() >= segment.states.len())
+        );
+        assert_eq!(
+            last.track.last().map(|moment| (moment.time, moment.X_HO)),
+            Some((report.time, report.X_HO))
+        );
     }
 }
 
@@ -96,7 +101,7 @@ fn a_replay_gives_the_same_bits_each_time() {
 
 #[test]
 fn simulated_transfers_solve_the_papers_problems() {
-    for name in ["sphere", "cubic"] {
+    for name in ["sphere", "sphere-tilt", "cubic", "ellip-obst"] {
         let run = plan(name, 1, &[(Slot::TransferPlanner, "rapier-checked")]);
         assert!(run.is_verified(), "{name}");
         assert_eq!(run.outcome.status, regrasp::planner::Status::Solved);
@@ -121,4 +126,70 @@ fn a_ball_too_slippery_for_its_plan_is_not_planned() {
         setup.run(&options).unwrap().is_verified()
     });
     assert_eq!(solved, [true, false]);
+}
+
+#[test]
+fn contacts_that_count_on_torsion_are_refused_for_simulated_transfers_and_replays() {
+    let registry = Registry::linked().unwrap();
+    let scenario = scenario::load("sphere-soft", &registry).unwrap();
+    let mut choices = scenario.choices.clone();
+    choices.use_plugin(Slot::TransferPlanner, "rapier-checked");
+    let setup = Setup::new(&scenario, &choices, &registry).unwrap();
+    let options = RunOptions { seed: 0, threads: 1, stop: &NeverStops, clock: &NoClock, progress: &Silent };
+    let error = setup.run(&options).err().expect("refused").to_string();
+    assert!(error.contains("rapier-checked") && error.contains("torsional"), "{error}");
+    let soft = plan("sphere-soft", 0, &[]).plan.expect("it is solved");
+    let folder = tempfile::tempdir().unwrap();
+    regrasp::plan::write(&folder.path().join("soft.json"), &soft).unwrap();
+    let (code, _, err) = command(folder.path(), "replay soft.json");
+    assert!(code == 2 && err.contains("soft.json") && err.contains("torsional"), "{err}");
+}
+
+/// Runs the program in a folder: exit code, standard output, standard error.
+fn command(folder: &Path, arguments: &str) -> (i32, String, String) {
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_regrasp"))
+        .args(arguments.split_whitespace())
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (output.status.code().unwrap_or(-1), text(&output.stdout), text(&output.stderr))
+}
+
+#[test]
+fn the_command_reports_segments_and_ends_with_4_where_the_object_does_not_arrive() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = balanced("sphere", 1);
+    regrasp::plan::write(&folder.path().join("plan.json"), &plan).unwrap();
+    let run = |arguments: &str| command(folder.path(), arguments);
+    let (code, out, err) = run("replay plan.json -o replay.json");
+    assert_eq!((code, err.as_str()), (0, ""));
+    assert!(
+        out.contains("the object arrives") && out.contains("transfer") && out.contains("regrasp"),
+        "{out}"
+    );
+    let file = std::fs::read_to_string(folder.path().join("replay.json")).unwrap();
+    let file: serde_json::Value = serde_json::from_str(&file).unwrap();
+    let segments = file["segments"].as_array().unwrap();
+    assert_eq!((segments.len(), file["arrived"].as_bool()), (plan.segments.len(), Some(true)));
+    for (told, planned) in segments.iter().zip(&plan.segments) {
+        assert!(told["object"].as_array().unwrap().len() >= planned.states.len());
+        assert!(told["distance_m"].as_f64().unwrap() < 5e-3 && told["failure"].is_null());
+    }
+    let (code, out, err) = run("replay plan.json --json --friction-scale 0.1");
+    let told: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert!(code == 4 && told["arrived"] == false && told["assumed"]["friction"].as_f64().unwrap() < 0.1);
+    assert!(err.contains("does not arrive: dropped in segment") && told["reason"] == err.trim_end(), "{err}");
+    for (bad, word) in [
+        ("replay plan.json --slowdown 0", "slowdown"),
+        ("replay plan.json --gravity 1,2", "gravity"),
+        ("replay plan.json --mass-scale much", "mass-scale"),
+        ("replay nothing.json", "nothing.json"),
+        ("replay plan.json -o no/where.json", "where.json"),
+    ] {
+        let (code, _, err) = run(bad);
+        assert!(code == 2 && err.contains(word), "{bad}: {err}");
+    }
+    // Where nothing weighs anything, mass does not matter at this pace.
+    assert_eq!(run("replay plan.json --gravity 0,0,0 --mass-scale 2").0, 0);
 }

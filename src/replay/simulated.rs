@@ -51,9 +51,7 @@ impl<'a> Told<'a> {
         }
         let motion = regrasp::plan::motion(&plan.segments).map_err(Failure::bad_input)?;
         let mut problem = plan.scenario.problem.clone();
-        if let Some(&[x, y, z]) = args.gravity.as_deref() {
-            problem.gravity = [x, y, z];
-        }
+        problem.gravity = args.gravity.unwrap_or(problem.gravity);
         let settings = settings(args, &problem);
         // A plan's meshes are given in place: there is no file to look for.
         let report = replay(&problem, Path::new(""), &stages(&motion), &settings);

@@ -7,7 +7,7 @@ use nalgebra::{Matrix6, Vector6};
 use regrasp_api::{FingerIndex, FingerJoints, Vec3, any_orthogonal};
 
 /// One finger's contact, as the program sees it; all vectors in one frame.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct GripContact {
     /// The finger that touches.
     pub finger: FingerIndex,
@@ -80,31 +80,36 @@ pub(crate) struct Grip {
     pub margin: f64,
 }
 
-/// How hard the fingers may press.
+/// How hard the fingers may press, and what for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Press {
     /// Most normal force of a contact (N).
     most: f64,
     /// Weight ε of the squared forces (1/N) against the margin.
     price: f64,
+    /// The margin (N) that is enough.
+    enough: f64,
 }
 
+/// More than any margin or force (N): a program that nothing bounds would have no best answer.
+const PLENTY: f64 = 1e3;
+
 impl Press {
-    /// Up to this normal force (N). The price leaves the margin nearly best, and makes the forces unique and continuous along a motion.
+    /// Up to this normal force (N), for the best margin. The price leaves it nearly best, and makes the forces unique and continuous along a motion.
     pub fn up_to(most: f64) -> Self {
-        Self { most, price: 1e-3 }
+        Self { most, price: 1e-3, enough: PLENTY }
     }
 
-    /// As hard as the joints can, however little that gains. A program whose forces nothing bounds would have no best answer: hence the kilonewton.
-    pub fn whole() -> Self {
-        Self { most: 1e3, price: 1e-6 }
+    /// As hard as the joints can and it takes for this margin (N), and no harder.
+    pub fn enough_for(margin: f64) -> Self {
+        Self { most: PLENTY, price: 1e-6, enough: margin }
     }
 }
 
 /// Length (m) by which rows of torque are divided, so that they compare with forces.
 const LENGTH: f64 = 0.03;
 
-/// Maximises t - ε/2 |f|² over the forces f with μ f_n - |(f_t, m μ/γ)| ≥ t at each contact, Σ f = -`load_f`, Σ (r × f + m n) = 0, f_n ≤ most
+/// Maximises t - ε/2 |f|² over the forces f with μ f_n - |(f_t, m μ/γ)| ≥ t at each contact, Σ f = -`load_f`, Σ (r × f + m n) = 0, t ≤ enough, f_n ≤ most
 /// and joint efforts |Jᵀ f| within theirs; `None` where no forces do. A margin of 0 or less
 /// says that none do so inside the cones.
 ///
@@ -120,7 +125,7 @@ pub(crate) fn best_grip(
     let width = bases.first()?.len();
     let mut program = Program::new(width, contacts.len());
     program.balance(&bases, load);
-    program.bounds(contacts, &bases, press.most);
+    program.bounds(contacts, &bases, &press);
     program.cones(friction.mu);
     let x = program.solve(press.price)?;
     let exerted =
@@ -202,12 +207,12 @@ impl Program {
         self.cones.push(SupportedConeT::ZeroConeT(6));
     }
 
-    /// f_n ≤ most; ±Jᵀf ≤ effort.
-    fn bounds(&mut self, contacts: &[GripContact], bases: &[Vec<Direction>], most: f64) {
+    /// f_n ≤ most; ±Jᵀf ≤ effort; t ≤ enough.
+    fn bounds(&mut self, contacts: &[GripContact], bases: &[Vec<Direction>], press: &Press) {
         let first = self.b.len();
         for (i, (contact, basis)) in contacts.iter().zip(bases).enumerate() {
             self.set(self.b.len(), self.width * i, 1.0);
-            self.b.push(most);
+            self.b.push(press.most);
             let efforts: Vec<FingerJoints> =
                 basis.iter().map(|direction| contact.efforts_of(&direction.unit)).collect();
             for (joint, &limit) in contact.efforts.iter().enumerate() {
@@ -220,6 +225,8 @@ impl Program {
                 }
             }
         }
+        self.set(self.b.len(), self.width * self.contacts, 1.0);
+        self.b.push(press.enough);
         self.cones.push(SupportedConeT::NonnegativeConeT(self.b.len() - first));
     }
 

@@ -7,8 +7,16 @@ use regrasp_api::{
     Configuration, FingerIndex, FingerJoints, FingerSet, Hand, ObjectModel, PerFinger, Rotation, Vec3,
 };
 
-/// A margin (of the weight) with which a grip is content; a smaller one is not worth sparing the joints.
-const CONTENT: f64 = 0.1;
+/// The margin (of the weight) below which a grip is a poor one, and that which is striven for with all efforts.
+///
+/// Not more than that: fingers that squeeze hard make a grasp unstable (the contacts' forces turn with the object, against the motors'
+/// stiffness), and joints at their limits have nothing left to correct with.
+const POOR: f64 = 0.1;
+const ENOUGH: f64 = 0.5;
+
+/// The parts of the friction that forces rely on, the first that gives a good grip: where fingers press hard, a margin in newtons alone would let
+/// forces slip that are one part in a hundred off their way.
+const PARTS: [f64; 2] = [0.95, 1.0];
 
 /// What part of a solved margin forces that are carried along must keep.
 const KEPT: f64 = 0.8;
@@ -34,9 +42,7 @@ pub(crate) struct Holder<'a> {
     object: &'a ObjectModel,
     /// The object's weight in H (N).
     weight: Vec3,
-    /// What the forces rely on where the joints can press enough, and what there is.
-    planned: Friction,
-    own: Friction,
+    friction: Friction,
     most: f64,
     share: f64,
     last: Option<Solved>,
@@ -45,20 +51,22 @@ pub(crate) struct Holder<'a> {
 struct Solved {
     contacts: Vec<GripContact>,
     grip: Grip,
-    /// The margin when it was solved (N); 0 for a poor grip, which is not carried along.
+    /// The friction that its forces rely on, and their margin by it when they were solved (N); 0 where they were found with all efforts, and are not
+    /// carried along.
+    friction: Friction,
     margin: f64,
 }
 
 impl<'a> Holder<'a> {
-    /// For forces that rely on the friction `planned` where they can, on `own` where they must, and an object of its own mass under gravity `g_H` (m/s²).
+    /// For forces that rely on at most this friction, and an object of its own mass under gravity `g_H` (m/s²).
     pub fn new(
         (hand, object, g_H): (&'a dyn Hand, &'a ObjectModel, Vec3),
-        [planned, own]: [Friction; 2],
+        friction: Friction,
         settings: &SimulationSettings,
     ) -> Self {
         let weight = g_H * object.mass;
         let most = settings.grip.unwrap_or((3.0 * weight.norm()).max(2.0));
-        Self { hand, object, weight, planned, own, most, share: settings.effort_share, last: None }
+        Self { hand, object, weight, friction, most, share: settings.effort_share, last: None }
     }
 
     /// How the fingers of `holding` hold the object at `q`; `None` where no forces of any direction do.
@@ -73,7 +81,7 @@ impl<'a> Holder<'a> {
         let mut held = Held {
             forces: PerFinger::filled(q.joints.len(), None),
             efforts: PerFinger::from_fn(q.joints.len(), |f| FingerJoints::zeros(q.joints[f].len())),
-            margin: margin(&contacts, forces, &self.own),
+            margin: margin(&contacts, forces, &self.friction),
         };
         for (contact, exerted) in contacts.iter().zip(forces) {
             held.forces[contact.finger] = Some(*exerted);
@@ -83,22 +91,38 @@ impl<'a> Holder<'a> {
         Some(held)
     }
 
-    /// The best grip within the bounds wished for; where that is a poor one, the best that the joints' whole efforts and all friction allow.
+    /// The grip that relies on the least part of the friction; for each part first one within the bounds wished for, then one that takes the
+    /// joints' whole efforts. Where even all friction and efforts give a poor one, that.
     fn solve(&self, contacts: &[GripContact]) -> Option<Solved> {
-        let solved = |grip: Grip, margin| Solved { contacts: contacts.to_vec(), grip, margin };
-        let wished = best_grip(contacts, &self.planned, &self.weight, Press::up_to(self.most));
-        if let Some(grip) = wished.as_ref().filter(|grip| grip.margin > CONTENT * self.weight.norm()) {
-            return Some(solved(grip.clone(), grip.margin));
-        }
+        let weight = self.weight.norm();
         let mut whole = contacts.to_vec();
         whole.iter_mut().flat_map(|contact| &mut contact.efforts).for_each(|effort| *effort /= self.share);
-        let grip = best_grip(&whole, &self.own, &self.weight, Press::whole()).or(wished)?;
-        Some(solved(grip, 0.0))
+        let mut last = None;
+        for friction in PARTS.map(|part| self.friction.part(part)) {
+            let solved = |grip, margin| Solved { contacts: contacts.to_vec(), grip, friction, margin };
+            let good = |grip: &Grip| grip.margin > POOR * weight;
+            let wished = best_grip(contacts, &friction, &self.weight, Press::up_to(self.most));
+            if let Some(grip) = wished.filter(good) {
+                let margin = grip.margin;
+                return Some(solved(grip, margin));
+            }
+            let grip = best_grip(&whole, &friction, &self.weight, Press::enough_for(ENOUGH * weight));
+            let is_good = grip.as_ref().is_some_and(good);
+            last = grip.map(|grip| solved(grip, 0.0)).or(last);
+            if is_good {
+                break;
+            }
+        }
+        last
     }
 
+    /// What was solved before, as far as it still serves.
     fn carry(&self, last: Solved, contacts: &[GripContact]) -> Option<Solved> {
         let fingers =
             |contacts: &[GripContact]| contacts.iter().map(|c| c.finger).collect::<Vec<FingerIndex>>();
+        if last.contacts == contacts {
+            return Some(last);
+        }
         if last.margin <= 0.0 || fingers(&last.contacts) != fingers(contacts) {
             return None;
         }
@@ -108,15 +132,12 @@ impl<'a> Holder<'a> {
                 ContactForce { force: turn * exerted.force, spin: exerted.spin }
             });
         let turned: Vec<ContactForce> = turned.collect();
-        let forces = balanced(contacts, &turned, &self.planned, &self.weight)?;
-        let now = margin(contacts, &forces, &self.planned);
+        let forces = balanced(contacts, &turned, &last.friction, &self.weight)?;
+        let now = margin(contacts, &forces, &last.friction);
         let bounded = contacts.iter().zip(&forces).all(|(contact, force)| contact.allows(force, self.most));
         let good = bounded && now >= KEPT * last.margin;
-        good.then(|| Solved {
-            contacts: contacts.to_vec(),
-            grip: Grip { forces, margin: now },
-            margin: last.margin,
-        })
+        let grip = Grip { forces, margin: now };
+        good.then(|| Solved { contacts: contacts.to_vec(), grip, ..last })
     }
 
     /// The contacts as the program of forces sees them, in H.

@@ -17,7 +17,8 @@ pub struct ReplaySettings {
     pub simulation: SimulationSettings,
     /// What ends the replay: by default only an object that is 20 mm or 0.5 rad away from its path, which counts as dropped.
     pub bounds: Bounds,
-    /// What the motion's times are multiplied with, in 0.1 to 100.
+    /// What the motion's times are multiplied with, in 0.1 to 100; 2 by default: plans are timed for the joints' limits, and grips balance the weight alone, not the
+    /// forces that move it.
     pub slowdown: f64,
     /// Time (s) between two stages in which the forces pass from one set of fingers to the next, and for which the object is held at the end; 0.01 to 10.
     pub shift: f64,
@@ -30,7 +31,7 @@ impl Default for ReplaySettings {
         Self {
             simulation: SimulationSettings::default(),
             bounds: Bounds { distance: 0.02, angle: 0.5, slip: f64::INFINITY, gap: f64::INFINITY },
-            slowdown: 1.0,
+            slowdown: 2.0,
             shift: 0.1,
             arrival: (5e-3, 5_f64.to_radians()),
         }
@@ -125,8 +126,7 @@ pub fn replay(
         hull: Some(&hull),
         g_H: world.g_H,
     };
-    let mu = world.object.friction * problem.limits.resolution.friction_margin;
-    let mut run = Run { scene, settings, mu, clock: 0.0, last: None, simulator: None };
+    let mut run = Run { scene, settings, clock: 0.0, last: None, simulator: None };
     let mut reports = Vec::new();
     for (index, stage) in stages.iter().enumerate() {
         let report = run.stage(stage, index + 1 == stages.len());
@@ -143,7 +143,6 @@ pub fn replay(
 struct Run<'a> {
     scene: Scene<'a>,
     settings: &'a ReplaySettings,
-    mu: f64,
     clock: f64,
     /// Where the stage before ended.
     last: Option<Knot>,
@@ -179,11 +178,8 @@ impl Run<'_> {
     /// The stage's schedule, forces passing over first, up to where no forces hold the object; and the least margin of a grip (N).
     fn knots(&mut self, stage: &Stage<'_>, is_last: bool) -> (Vec<Knot>, f64) {
         let Scene { hand, object, g_H, .. } = self.scene;
-        let mut holder = Holder::new(
-            (hand, object, g_H),
-            [self.mu, object.friction].map(Friction::point),
-            &self.settings.simulation,
-        );
+        let mut holder =
+            Holder::new((hand, object, g_H), Friction::point(object.friction), &self.settings.simulation);
         let start = self.clock + self.settings.shift;
         let first = stage.times.first().copied().unwrap_or(0.0);
         let mut least = f64::INFINITY;

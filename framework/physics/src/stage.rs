@@ -30,12 +30,10 @@ impl Stage<'_> {
 
 /// The forces that hold the object in every state of a motion, stage by stage: those farthest from slipping that the joints can exert.
 ///
-/// `friction` is what the forces rely on, a plan's claim, which is a little below the object's own; where it does not suffice, they rely on the object's
-/// and on the joints' whole efforts. Of the settings only `grip` and `effort_share` matter.
-/// `g_H` is the acceleration of gravity (m/s², in H). A state's entry is `None` where the grasp cannot exert every wrench
-/// even without regard to friction. From one stage to the next the
-/// forces jump, though the state is the same: other fingers hold; let them pass over while everything rests. Cost: 0.1 ms for each program
-/// that is solved, one in some ten states.
+/// `friction` is what there is: the object's, or what a plan claims; the forces rely on a little less where they can. Of the settings only `grip` and
+/// `effort_share` matter. `g_H` is the acceleration of gravity (m/s², in H). A state's entry is `None` where the grasp cannot exert every wrench
+/// even without regard to friction. From one stage to the next the forces jump, though the state is the same: other fingers hold; let them
+/// pass over while everything rests. Cost: 0.1 ms for each program that is solved, one in some ten states.
 pub fn grasp_forces(
     (hand, object, g_H): (&dyn Hand, &ObjectModel, Vec3),
     friction: Friction,
@@ -45,10 +43,7 @@ pub fn grasp_forces(
     settings.validate()?;
     friction.validate()?;
     let one = |stage: &Stage<'_>| {
-        // The object's own friction, but never less than was planned with.
-        let own = Friction { mu: friction.mu.max(object.friction), gamma: friction.gamma };
-        let frictions = [friction, own].map(|friction| stage.friction(friction));
-        let mut holder = Holder::new((hand, object, g_H), frictions, settings);
+        let mut holder = Holder::new((hand, object, g_H), stage.friction(friction), settings);
         stage.states.iter().map(|q| holder.hold(q, stage.holding(q))).collect()
     };
     Ok(stages.iter().map(one).collect())

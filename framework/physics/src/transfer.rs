@@ -37,7 +37,7 @@ impl TransferSimulator {
         mu: f64,
         bounds: &Bounds,
     ) -> Outcome {
-        let mut holder = Holder::new((hand, object, g_H), [Friction::point(mu); 2], &self.settings);
+        let mut holder = Holder::new((hand, object, g_H), Friction::point(mu), &self.settings);
         let times = pace.times(hand, states);
         let knot = |(q, &time): (&Configuration, &f64)| {
             let Held { efforts: feed, margin, .. } = holder.hold(q, q.holding())?;

@@ -7,9 +7,7 @@ use regrasp_api::*;
 use regrasp_physics::*;
 use support::{G, hand, object, ring, shapes};
 
-/// What forces are planned with, and the friction that the objects have.
 const FRICTION: Friction = Friction { mu: 0.7, gamma: 0.004 };
-const OWN: Friction = Friction { mu: 0.8, gamma: 0.004 };
 
 /// One state of a transfer and of a regrasp of finger 1, with the forces in each.
 fn held(object: &ObjectModel, friction: Friction) -> (Configuration, [Held; 2]) {
@@ -39,7 +37,7 @@ fn resultant(q: &Configuration, object: &ObjectModel, held: &Held) -> (Vec3, Vec
 fn forces_balance_the_weight_inside_their_cones() {
     for object in shapes() {
         let (q, [transfer, regrasp]) = held(&object, FRICTION);
-        for (held, friction, holding) in [(transfer, Friction::point(0.8), 4), (regrasp, OWN, 3)] {
+        for (held, friction, holding) in [(transfer, Friction::point(0.7), 4), (regrasp, FRICTION, 3)] {
             let (force, torque) = resultant(&q, &object, &held);
             assert!((force + G * object.mass).norm() < 1e-6 && torque.norm() < 1e-7, "{force} {torque}");
             let forces = held.forces.iter().filter_map(|(finger, exerted)| Some((finger, (*exerted)?)));
