@@ -87,7 +87,7 @@ fn unknown_scenarios_and_hands_show_the_near_ones() {
     assert_says(&refusal("four-finger", "for-finger"), &["no built-in hand `for-finger`", "`four-finger`"]);
     assert_says(
         &refusal("builtin = \"four-finger\"", ""),
-        &["give either `builtin`", "`file`", "key `hand`", &at("[hand]")],
+        &["give one of `builtin`", "`file`", "key `hand`", &at("[hand]")],
     );
 }
 
