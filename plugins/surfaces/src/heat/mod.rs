@@ -15,8 +15,9 @@
 //! facets as they are, the same length both ways, and within 2 % of the shortest in the tests, nearly always the shortest.
 //!
 //! # Cost
-//! Two solutions of each system for a path: about a millisecond with the default 3000 facets. Where many paths are asked for,
-//! `surface/geodesic` is hundreds of times faster; what the heat method shows is the cost of solving for all distances at once.
+//! Two solutions of each system for a path: about a millisecond with the default 3000 facets, 8 ms with 20,480 facets. Where single paths are
+//! asked for, `surface/geodesic` is tens to hundreds of times faster; what the heat method shows is the cost of all distances at once.
+//! Preparation: 25 ms and 3 MB for 1,280 facets (cut to 5,120), 0.15 s and 40 MB for 20,480.
 //!
 //! # Beside paths
 //! The fingertip's way above a path, samples, projections and walks are those of `surface/geodesic`. `false` in the same
