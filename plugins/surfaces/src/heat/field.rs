@@ -133,7 +133,7 @@ fn factorise(
     }
     let failed = |reason: String| {
         BuildError::Unsupported(format!(
-            "`surface/heat`: the mesh's Laplacian cannot be factorised ({reason}); use `surface/geodesic` or `surface/steiner`"
+            "the mesh's Laplacian cannot be factorised ({reason}); use `surface/geodesic` or `surface/steiner`"
         ))
     };
     let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(count, count, &entries)

@@ -149,7 +149,7 @@ impl Heat {
         let rolling = Rolling::new(mesh, radius, settings.sharp_angle_deg, settings.step);
         let fine = Fine::new(mesh, settings.fewest_facets as usize).map_err(|error| {
             BuildError::Unsupported(format!(
-                "`surface/heat`: {error}; choose a smaller `fewest_facets` or use `surface/geodesic`"
+                "{error}; choose a smaller `fewest_facets` or use `surface/geodesic`"
             ))
         })?;
         let field = Field::new(&fine, settings.smoothing)?;

@@ -132,7 +132,7 @@ impl Parametric {
         settings.validate()?;
         let refused = |reason: &str| {
             BuildError::Unsupported(format!(
-                "`surface/parametric`: {reason}; use `surface/geodesic`, which takes any closed mesh, or describe the object as a \
+                "{reason}; use `surface/geodesic`, which takes any closed mesh, or describe the object as a \
                  sphere, ellipsoid, cuboid, cylinder, capsule or torus"
             ))
         };
