@@ -5,6 +5,7 @@ use crate::table::Table;
 use crate::{Failure, say, say_json};
 use regrasp::api::{Entry, Role, Slot};
 use regrasp::host::{Choices, Registry, did_you_mean, near, settings_schema};
+use regrasp::study::scenario::SCENARIOS;
 use serde_json::{Map, Value, json};
 
 /// The plugins that are linked into the program, and those of the libraries that are to be loaded.
@@ -119,5 +120,8 @@ fn example(entry: &Entry, properties: &Map<String, Value>) -> String {
         let default = property.get("default").and_then(|value| toml::Value::try_from(value).ok());
         text += &default.map(|value| format!("    {key} = {value}\n")).unwrap_or_default();
     }
-    text + &format!("  on the command line:\n    regrasp plan sphere --use {slot}={name}\n")
+    // A built-in scenario made for the plugin, if there is one: not every plugin fits the hand of `sphere`.
+    let made_for = SCENARIOS.iter().find(|file| file.text.contains(&format!("use = \"{}\"", entry.id)));
+    let scenario = made_for.map_or("sphere", |file| file.name);
+    text + &format!("  on the command line:\n    regrasp plan {scenario} --use {slot}={name}\n")
 }
