@@ -57,8 +57,10 @@ pub fn execute(
     let mut keys = prepared.study.keys();
     let total = keys.len();
     keys.retain(|key| !folder.holds(*key));
-    // Runs that are compared follow each other, so that whatever slows the machine down for a while slows down all of them.
-    keys.sort_by_key(|key| (key.scenario, key.seed, key.variant));
+    // Runs that are compared follow each other, so that whatever slows the machine down for a while slows down all of them; with each seed
+    // another variant is first, since the first meets cold caches.
+    let variants = prepared.study.variants.len() as u64;
+    keys.sort_by_key(|key| (key.scenario, key.seed, key.seed.wrapping_add(key.variant as u64) % variants));
     with.progress.begin(total - keys.len(), total);
     let job = Job {
         prepared,
