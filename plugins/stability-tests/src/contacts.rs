@@ -199,7 +199,10 @@ fn unscaled(contact: &GraspContact<'_>, plugin: &'static str) -> Result<ScaledCo
         Cone::Elliptic { mu, gamma } => Ok(ScaledContact { r: contact.p_OC, n: -contact.n_O, mu, gamma }),
         Cone::Polyhedral(_) => Err(CallError::Unsupported {
             plugin: plugin.to_owned(),
-            reason: format!("it decides elliptic cones exactly and takes no polyhedral ones; {}", instead(plugin)),
+            reason: format!(
+                "it decides elliptic cones exactly and takes no polyhedral ones; {}",
+                instead(plugin)
+            ),
         }),
     }
 }
