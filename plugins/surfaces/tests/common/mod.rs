@@ -4,7 +4,7 @@
 pub mod meshes;
 pub mod reference;
 
-use regrasp_api::{Contact, Context, Random, SurfaceParam, SurfacePath, Uninterrupted};
+use regrasp_api::{Contact, Context, Mesh, Random, SurfaceParam, SurfacePath, Uninterrupted};
 
 /// The path between two contacts, which must exist.
 pub fn path(surface: &dyn SurfaceParam, from: &Contact, to: &Contact) -> SurfacePath {
@@ -17,4 +17,14 @@ pub fn path(surface: &dyn SurfaceParam, from: &Contact, to: &Contact) -> Surface
 /// The length of the path of the contact point (m).
 pub fn length(surface: &dyn SurfaceParam, from: &Contact, to: &Contact) -> f64 {
     path(surface, from, to).length
+}
+
+/// A random point of the mesh: inside a facet, on an edge or at a vertex.
+pub fn anywhere(mesh: &Mesh, random: &mut Random) -> Contact {
+    let facet = random.index(mesh.facets().len()) as u32;
+    let [a, b, c] = mesh.corners(facet);
+    let (t, kind) = (random.unit(), random.index(6));
+    let s = if kind > 1 { random.unit() * (1.0 - t) } else { 0.0 };
+    let p_OC = if kind == 0 { a } else { a * (1.0 - s - t) + b * t + c * s };
+    Contact { facet, p_OC, n_O: mesh.normal(facet) }
 }
