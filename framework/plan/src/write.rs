@@ -15,7 +15,7 @@ pub fn write(path: &Path, plan: &Plan) -> Result<(), WriteError> {
     write_file(path, |writer| write_json(plan, writer))
 }
 
-/// Writes any file as [`write`] writes plans: `put` gives its content.
+/// Writes any file as [`write()`] writes plans: `put` gives its content.
 pub fn write_file(path: &Path, put: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), WriteError> {
     let done = match target(path)? {
         Target::Special => OpenOptions::new().write(true).open(path).and_then(|file| buffered(&file, put)),
