@@ -32,7 +32,9 @@ fn the_full_factorial_is_there_in_order_and_sums_up() {
         };
         let planning = number("planning_s");
         assert!((sum("self.") - planning).abs() < 1e-9, "self times are all of the planning");
-        assert!((sum("phase.") - planning).abs() < 0.2 * planning, "phases are nearly all of the planning");
+        // Plans take milliseconds: between two phases the machine may do something else for longer than that.
+        let rest = planning - sum("phase.");
+        assert!((-1e-9..0.2 * planning + 0.1).contains(&rest), "phases are nearly all of the planning");
         assert_eq!((row["status"].as_str(), row["verified"].as_str()), ("solved", "true"));
         assert!(number("margin") > 0.0 && number("clearance_m") > 0.0 && number("slip_m") < 1e-4);
         // The ball is turned by half a turn at least, on a way that is no shorter than none.
