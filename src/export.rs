@@ -1,10 +1,9 @@
-//! `regrasp export`, and the grasps that `regrasp plan --grasps` keeps.
+//! `regrasp export`
 
 use crate::table::Table;
 use crate::{Failure, say, say_json};
-use regrasp::api::Slot;
-use regrasp::export::{ExportError, File, Format, GraspRecord, Grasps, Scene};
-use regrasp::study::{Run, Setup, scenario::Scenario};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use regrasp::export::{ExportError, File, Format, Scene};
 use serde_json::json;
 use std::fs;
 use std::io::{self, Write};
@@ -25,8 +24,8 @@ pub struct ExportArgs {
     /// A plan file.
     pub plan: PathBuf,
     /// The formats, with commas between.
-    #[arg(long, required = true, value_name = "FORMAT", value_delimiter = ',', value_enum)]
-    pub to: Vec<To>,
+    #[arg(long, required = true, value_name = "FORMAT", value_delimiter = ',', value_parser = format())]
+    pub to: Vec<Format>,
     /// Write the files into this folder, which is made where there is none.
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub output: PathBuf,
@@ -35,26 +34,11 @@ pub struct ExportArgs {
     pub json: bool,
 }
 
-/// A format as the command line knows it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum To {
-    Gltf,
-    Urdf,
-    Mjcf,
-    Csv,
-    Npz,
-}
-
-impl From<To> for Format {
-    fn from(to: To) -> Self {
-        match to {
-            To::Gltf => Self::Gltf,
-            To::Urdf => Self::Urdf,
-            To::Mjcf => Self::Mjcf,
-            To::Csv => Self::Csv,
-            To::Npz => Self::Npz,
-        }
-    }
+/// Takes the formats by their names.
+fn format() -> impl TypedValueParser<Value = Format> {
+    let named = |name: String| Format::ALL.into_iter().find(|format| format.name() == name);
+    PossibleValuesParser::new(Format::ALL.map(Format::name))
+        .try_map(move |name| named(name).ok_or("no such format"))
 }
 
 pub fn run(args: &ExportArgs) -> Result<(), Failure> {
@@ -65,8 +49,7 @@ pub fn run(args: &ExportArgs) -> Result<(), Failure> {
     let scene = Scene::new(&plan).map_err(refuse)?;
     let stem = args.plan.file_stem().map_or("plan".into(), |stem| stem.to_string_lossy());
     let mut files: Vec<(Format, File)> = Vec::new();
-    for &to in &args.to {
-        let format = Format::from(to);
+    for &format in &args.to {
         if files.iter().all(|(done, _)| *done != format) {
             let made = scene.export(format, &stem).map_err(refuse)?;
             files.extend(made.into_iter().map(|file| (format, file)));
@@ -90,7 +73,7 @@ fn make_folder(folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder).map_err(|error| refuse(&error))
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     regrasp::plan::write_file(path, |writer| writer.write_all(bytes)).map_err(Failure::bad_input)
 }
 
@@ -118,45 +101,4 @@ fn tell(args: &ExportArgs, files: &[(Format, File)], notes: &[String]) -> Result
         table.row([format.name().to_owned(), name, format!("{:.1}", file.bytes.len() as f64 / 1e3)]);
     }
     say(&table.text())
-}
-
-/// Refuses a place for grasps before any work is done.
-pub fn check_grasps(path: Option<&Path>) -> Result<(), Failure> {
-    let Some(path) = path else { return Ok(()) };
-    match path.extension().and_then(|extension| extension.to_str()) {
-        Some("json" | "npz") => regrasp::plan::check_place(path).map_err(Failure::bad_input),
-        _ => Err(Failure::bad_input(format!(
-            "`--grasps {}`: the file's name must end with `.json` or `.npz`",
-            path.display()
-        ))),
-    }
-}
-
-/// Keeps the stable grasps of the run's manipulation graph.
-pub fn save_grasps(path: &Path, scenario: &Scenario, setup: &Setup<'_>, run: &Run) -> Result<usize, Failure> {
-    let graph = &run.outcome.graph;
-    let mut records = Vec::new();
-    for (number, q) in graph.nodes().iter().enumerate() {
-        let margin = setup.margin(q).map_err(Failure::bad_input)?;
-        // A given start may be no stable grasp of the stability test at rest; the cache holds stable ones alone.
-        if margin > 0.0 {
-            let component = graph.component(regrasp::api::NodeId(number as u32)).0 as usize;
-            records.push(GraspRecord { q: q.clone(), component, margin });
-        }
-    }
-    let id = |slot: Slot| setup.choices().choice(slot).id.as_str();
-    let grasps = Grasps {
-        scenario: &scenario.name,
-        hand: &scenario.problem.hand,
-        stability_test: id(Slot::StabilityTest),
-        contact_model: id(Slot::ContactModel),
-        grasps: &records,
-    };
-    let name = path.display().to_string();
-    let file = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("npz") => grasps.npz(&name).map_err(Failure::bad_input)?,
-        _ => grasps.json(&name),
-    };
-    write(path, &file.bytes)?;
-    Ok(records.len())
 }

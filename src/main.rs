@@ -6,6 +6,7 @@ mod args;
 mod compare;
 mod export;
 mod failure;
+mod grasps;
 mod hand;
 mod new_plugin;
 mod overrides;

@@ -3,7 +3,7 @@
 use crate::args::PlanArgs;
 use crate::progress::Line;
 use crate::watch::Watch;
-use crate::{Failure, export, overrides, plugins, report, say, say_json, view};
+use crate::{Failure, grasps, overrides, plugins, report, say, say_json, view};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
 use regrasp::study::{Run, RunOptions, Setup, scenario};
@@ -17,7 +17,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     overrides::apply(&mut scenario, args)?;
     // A place where nothing can be written is refused before any work is done.
     args.output.as_deref().map_or(Ok(()), regrasp::plan::check_place).map_err(Failure::bad_input)?;
-    export::check_grasps(args.grasps.as_deref())?;
+    grasps::check(args.grasps.as_deref())?;
     let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::bad_input)?;
     let watch = Watch::start(scenario.problem.limits.budget.time_limit);
     let line = Line::new();
@@ -28,7 +28,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     let ran = ran.map_err(Failure::bad_input)?;
     let saved = save(args.output.as_deref(), &ran)?;
     if let Some(path) = &args.grasps {
-        let count = export::save_grasps(path, &scenario, &setup, &ran)?;
+        let count = grasps::save(path, &scenario, &setup, &ran)?;
         remark(&[format!("{count} stable grasps are in {}", path.display())]);
     }
     let summary = report::Summary {

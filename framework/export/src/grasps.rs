@@ -70,9 +70,8 @@ impl Grasps<'_> {
             self.grasps.iter().flat_map(|grasp| grasp.q.joints.iter().flat_map(|(_, q)| q.to_vec()));
         archive.floats("joints", &[g, joints.len()], postures)?;
         let vectors = |pick: fn(&Configuration, FingerIndex) -> Option<Vec3>| {
-            let one = move |grasp: &GraspRecord| {
-                let q = grasp.q.clone();
-                (0..f).flat_map(|finger| three(pick(&q, FingerIndex(finger as u8)))).collect::<Vec<_>>()
+            let one = |grasp: &GraspRecord| {
+                (0..f).flat_map(|finger| three(pick(&grasp.q, FingerIndex(finger as u8)))).collect::<Vec<_>>()
             };
             self.grasps.iter().flat_map(one).collect::<Vec<_>>()
         };

@@ -96,7 +96,7 @@ impl Assets<'_> {
             Some(Primitive::Cuboid { half_size }) => sized("box", half_size.as_slice()),
             Some(Primitive::Cylinder { radius, half_height }) => sized("cylinder", &[radius, half_height]),
             Some(Primitive::Capsule { radius, half_height }) => sized("capsule", &[radius, half_height]),
-            _ if scene.object_is_convex() => {
+            _ if scene.object.mesh.is_locally_convex() => {
                 vec![vec![("type", "mesh".into()), ("mesh", self.mesh(OBJECT, &scene.object.mesh))]]
             }
             _ => self.wedges(&scene.object.mesh),

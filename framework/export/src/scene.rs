@@ -4,9 +4,7 @@ use crate::forces::Forces;
 use crate::names::{Names, file_stem};
 use crate::solid::Solids;
 use crate::{ExportError, File, Format};
-use regrasp_api::{
-    Configuration, FingerIndex, Hand, HandDescription, ObjectModel, ObjectShape, Pose, PoseDescription,
-};
+use regrasp_api::{Configuration, FingerIndex, Hand, HandDescription, ObjectModel, Pose, PoseDescription};
 use regrasp_plan::{Motion, Plan};
 use regrasp_world::ChainHand;
 use std::path::Path;
@@ -85,12 +83,6 @@ impl<'a> Scene<'a> {
         let mimic = joints[joint].mimic.as_ref()?;
         let driver = joints.iter().position(|other| other.name == mimic.joint)?;
         Some(Driver { joint: driver, multiplier: mimic.multiplier, offset: mimic.offset })
-    }
-
-    /// Whether the object's mesh is its convex hull.
-    pub(crate) fn object_is_convex(&self) -> bool {
-        let ring = matches!(self.plan.scenario.problem.object.shape, ObjectShape::Torus { .. });
-        !ring && self.object.mesh.is_locally_convex()
     }
 
     pub(crate) fn fingers(&self) -> impl Iterator<Item = FingerIndex> + use<> {
