@@ -5,6 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import sync_playwright
 
 # A browser that draws in software and keeps to itself.
@@ -15,6 +16,8 @@ ARGUMENTS = [
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",
+    # Containers give /dev/shm 64 MB, less than a picture of a long page needs.
+    "--disable-dev-shm-usage",
     "--use-gl=angle",
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
@@ -36,10 +39,31 @@ def regrasp():
 
 @pytest.fixture(scope="session")
 def pictures():
-    """Where screenshots are kept for a person to look at."""
+    """Where pictures are kept for a person to look at."""
     folder = Path(os.environ["OUTSIDE"])
     folder.mkdir(parents=True, exist_ok=True)
     return folder
+
+
+@pytest.fixture(scope="session")
+def keep_picture(pictures):
+    """Keeps what a page's window shows under this name, for a person to look at.
+
+    No test asks anything of these pictures. Software rendering on a busy machine now and then has no frame ready in time
+    ("Unable to capture screenshot"): it is asked again.
+    """
+
+    def keep(page, name, attempts=5):
+        for left in reversed(range(attempts)):
+            try:
+                page.screenshot(path=pictures / name)
+                return
+            except PlaywrightError:
+                if not left:
+                    raise
+                page.wait_for_timeout(500)
+
+    return keep
 
 
 @pytest.fixture(scope="session")

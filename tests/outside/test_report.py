@@ -28,7 +28,7 @@ def test_nothing_is_asked_for_and_nothing_complained_of(report, study):  # noqa:
     assert opened.foreign_requests(study / "report.html") == []
 
 
-def test_every_chart_shows_every_variant(report, pictures):
+def test_every_chart_shows_every_variant(report, keep_picture):
     page = report().page
     assert page.locator(".card").count() == 2
     assert page.locator(".curve").count() == 2 * VARIANTS
@@ -42,7 +42,7 @@ def test_every_chart_shows_every_variant(report, pictures):
     assert page.locator(".strip svg").count() == 2
     assert page.locator(".strip .rg-tip, .strip .rg-free").count() == 2 * 4 * 4, "four fingers at four moments"
     assert "The paper remarks" in page.locator("#remark").inner_text()
-    page.screenshot(path=pictures / "report.png", full_page=True)
+    keep_picture(page, "report.png")
 
 
 def test_figures_are_those_of_the_table(report, runs):  # noqa: F811
@@ -81,23 +81,23 @@ def test_filters_hide_levels_and_scenarios(report):
     assert page.locator(".curve").count() == VARIANTS
 
 
-def test_a_phone_needs_no_sideways_scrolling(report, pictures):
+def test_a_phone_needs_no_sideways_scrolling(report, keep_picture):
     page = report(width=390, height=844, device_scale_factor=2).page
     assert page.evaluate("document.documentElement.scrollWidth") == 390
     # Charts are drawn for this width, not shrunk: their letters stay as large as they are.
     assert page.eval_on_selector(".chart svg", "node => node.getBoundingClientRect().width / node.viewBox.baseVal.width") > 0.95
-    page.screenshot(path=pictures / "report-phone.png", full_page=True)
+    keep_picture(page, "report-phone.png")
     page.set_viewport_size({"width": 320, "height": 640})
     page.wait_for_timeout(100)
     assert page.evaluate("document.documentElement.scrollWidth") == 320
 
 
-def test_the_dark_is_dark(report, pictures):
+def test_the_dark_is_dark(report, keep_picture):
     light, dark = report().page, report(color_scheme="dark").page
     assert brightness(light, "html", "backgroundColor") > 230 and brightness(light, "body", "color") < 90
     assert brightness(dark, "html", "backgroundColor") < 60 and brightness(dark, "body", "color") > 180
     assert brightness(dark, ".rg-tip", "fill") > 180, "pictures, too"
-    dark.screenshot(path=pictures / "report-dark.png", full_page=True)
+    keep_picture(dark, "report-dark.png")
 
 
 def test_it_prints(report, pictures):

@@ -61,7 +61,7 @@ def canvas_colors(page):
     )
 
 
-def test_the_page_loads_in_peace_and_shows_something(folder, visit, pictures):
+def test_the_page_loads_in_peace_and_shows_something(folder, visit, keep_picture):
     page = folder / "plan.html"
     seen = ready(visit, page, height=760)
     assert canvas_colors(seen.page) > 200
@@ -69,7 +69,7 @@ def test_the_page_loads_in_peace_and_shows_something(folder, visit, pictures):
     # This picture, with fewer colours, is the README's.
     seen.page.evaluate("regrasp.seek(0.97 * regrasp.app.motion.end)")
     seen.page.wait_for_timeout(400)  # until colours that change have changed
-    seen.page.screenshot(path=pictures / "view.png")
+    keep_picture(seen.page, "view.png")
     quiet(seen, page)
 
 
@@ -245,24 +245,24 @@ def test_contacts_lie_where_fingertip_and_object_meet(folder, visit):
     assert 0 < worst < 1e-4, "closure, and what a straight line between two states leaves of it"
 
 
-def test_dark_and_light(folder, visit, pictures):
+def test_dark_and_light(folder, visit, keep_picture):
     backgrounds = {}
     for scheme in ("light", "dark"):
         seen = ready(visit, folder / "plan.html", color_scheme=scheme)
         backgrounds[scheme] = seen.page.evaluate("getComputedStyle(document.body).backgroundColor")
-        seen.page.screenshot(path=pictures / f"view-{scheme}.png")
+        keep_picture(seen.page, f"view-{scheme}.png")
     assert backgrounds["light"] != backgrounds["dark"]
     seen.page.get_by_role("button", name="Switch to light").click()
     assert seen.page.evaluate("getComputedStyle(document.body).backgroundColor") == backgrounds["light"]
 
 
-def test_a_telephone_shows_it_all(folder, visit, pictures):
+def test_a_telephone_shows_it_all(folder, visit, keep_picture):
     seen = ready(visit, folder / "plan.html", width=390, height=780)
     page = seen.page
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), "nothing sticks out at the side"
     for selector in ("#canvas", "#play", "#scrub", "#segment-list"):
         assert page.locator(selector).is_visible()
-    page.screenshot(path=pictures / "view-phone.png")
+    keep_picture(page, "view-phone.png")
 
 
 def test_everything_that_can_be_used_has_a_name(folder, visit):
@@ -275,7 +275,7 @@ def test_everything_that_can_be_used_has_a_name(folder, visit):
     assert nameless == []
 
 
-def test_the_graph_has_its_tab(folder, visit, pictures):
+def test_the_graph_has_its_tab(folder, visit, keep_picture):
     path = folder / "graph.html"
     seen = ready(visit, path)
     page = seen.page
@@ -290,7 +290,7 @@ def test_the_graph_has_its_tab(folder, visit, pictures):
     nodes.nth(2).dispatch_event("click")
     assert "Grasp 2" in page.locator(".node-details").inner_text()
     assert page.evaluate("regrasp.app.stage.body.position.toArray()") != before or len(set(map(str, graph["states"]["object"]))) < 8
-    page.screenshot(path=pictures / "view-graph.png")
+    keep_picture(page, "view-graph.png")
     page.keyboard.press("Home")
     assert "Point at a grasp" in page.locator(".node-details").inner_text()
     quiet(seen, path)
@@ -373,7 +373,7 @@ def test_a_plan_that_does_not_verify_is_shown_with_what_is_wrong(folder, plan, t
     assert page.evaluate("regrasp.time") > 0
 
 
-def test_a_simulated_object_goes_beside_the_plan(folder, regrasp, visit, pictures):
+def test_a_simulated_object_goes_beside_the_plan(folder, regrasp, visit, keep_picture):
     told = subprocess.run([os.environ["REGRASP"], "replay", "plan.json", "-o", "replay.json"], capture_output=True, text=True, cwd=folder)
     assert told.returncode in (0, 4), told.stderr
     regrasp("view", "plan.json", "--replay", "replay.json", "-o", "replay.html", cwd=folder)
@@ -383,7 +383,7 @@ def test_a_simulated_object_goes_beside_the_plan(folder, regrasp, visit, picture
     page.evaluate("regrasp.seek(0.5)")
     apart = page.evaluate("regrasp.app.stage.ghost.position.distanceTo(regrasp.app.stage.body.position)")
     assert 0 < apart < 0.02, "near the planned object, but not the same"
-    page.screenshot(path=pictures / "view-replay.png")
+    keep_picture(page, "view-replay.png")
     quiet(seen, folder / "replay.html")
 
 
