@@ -1,29 +1,38 @@
-//! Regrasp: planning of dexterous manipulation with continuous grasps, every component of the algorithm a plugin.
-//!
-//! Given a multi-fingered hand, a rigid object, a start and goals, it finds the transfers (the object moves, the fingertips roll without
-//! slip) and regrasps (the object rests, one finger moves) that take the object there, the grasp being stable at every instant. The default
-//! plugins are those of A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007.
-//!
-//! This crate gathers what a user of the library needs and links the built-in plugins. A run in four steps:
+//! Regrasp plans how a multi-fingered hand takes an object from one pose to another: by *transfers* (the object moves, the fingertips roll
+//! without slip) and *regrasps* (the object rests, one finger moves), the grasp being stable at every instant.
 //!
 //! ```
-//! use regrasp::planner::{Clock, Silent};
-//! use regrasp::study::{NeverStops, RunOptions, Setup, scenario};
-//!
-//! struct NoClock; // a program that wants the times gives a real one
-//! impl Clock for NoClock {
-//!     fn seconds(&self) -> f64 {
-//!         0.0
-//!     }
-//! }
-//!
-//! let registry = regrasp::host::Registry::linked()?;
-//! let scenario = scenario::load("sphere", &registry)?;
-//! let setup = Setup::new(&scenario, &scenario.choices, &registry)?;
-//! let run = setup.run(&RunOptions { seed: 1, threads: 1, stop: &NeverStops, clock: &NoClock, progress: &Silent })?;
+//! let scenario = regrasp::load("sphere")?; // a built-in scenario, or a file
+//! let run = regrasp::solve(&scenario, 1)?; // plans with seed 1, and verifies
 //! assert!(run.is_verified());
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! for segment in &run.outcome.motion.segments {
+//!     println!("{:?}, {} states", segment.kind, segment.states.len());
+//! }
+//! # Ok::<(), regrasp::study::RunError>(())
 //! ```
+//!
+//! Every component of the algorithm is a plugin of one of six roles, each a trait of [`api`]:
+//!
+//! | role | answers | by default |
+//! |---|---|---|
+//! | [`ContactModel`](api::ContactModel) | which wrenches can this contact transmit | [`pcwf`](plugins::contact_models::Pcwf) |
+//! | [`StabilityTest`](api::StabilityTest) | is the grasp stable, by what margin | [`force-closure`](plugins::stability_tests::ForceClosure) |
+//! | [`SurfaceParam`](api::SurfaceParam) | points, normals and shortest paths on the object | [`geodesic`](plugins::surfaces::geodesic) |
+//! | [`ClosedChainSampler`](api::ClosedChainSampler) | a random configuration in which the fingers hold the object | [`rlg`](plugins::samplers::rlg) |
+//! | [`LocalPlanner`](api::LocalPlanner) | connects two configurations by sliding, rolling or regrasping | [`linear`](plugins::local_planners::Linear), [`rolling`](plugins::local_planners::Rolling), [`rrt`](plugins::local_planners::Rrt) |
+//! | [`GraphStrategy`](api::GraphStrategy) | what to do next with the manipulation graph | [`interleaved`](plugins::graph_strategies::Interleaved) |
+//!
+//! The defaults are those of A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007.
+//! Another plugin for a run is one line, `scenario.choices.use_plugin(Slot::StabilityTest, "socp")`. A plugin of your own is a type that
+//! implements its role and an [`Entry`](api::Entry) that registers it; [`api`]'s page shows a whole one.
+//!
+//! Where [`load`] and [`solve`] are too simple: [`setup`] builds the plugins once and lets you call them
+//! ([`Setup::task`], [`Setup::plugins`]), [`Setup::run`] takes a time limit, threads and progress, [`Registry::with_libraries`] loads plugins at
+//! run time, and [`study::compare`](mod@study::compare) compares combinations of plugins. The package's `examples/` has one small program for each of these.
+
+mod stopwatch;
+
+pub use stopwatch::Stopwatch;
 
 pub use regrasp_api as api;
 pub use regrasp_export as export;
@@ -36,10 +45,38 @@ pub use regrasp_verify as verify;
 pub use regrasp_view as view;
 pub use regrasp_world as world;
 
-// A dependency alone registers nothing: naming the crates links them, and with them their entries.
-use regrasp_contact_models as _;
-use regrasp_graph_strategies as _;
-use regrasp_local_planners as _;
-use regrasp_samplers as _;
-use regrasp_stability_tests as _;
-use regrasp_surfaces as _;
+/// The built-in plugins, a module for each role.
+///
+/// Naming their crates here links them, and with them their entries: a dependency alone registers nothing.
+pub mod plugins {
+    pub use regrasp_contact_models as contact_models;
+    pub use regrasp_graph_strategies as graph_strategies;
+    pub use regrasp_local_planners as local_planners;
+    pub use regrasp_samplers as samplers;
+    pub use regrasp_stability_tests as stability_tests;
+    pub use regrasp_surfaces as surfaces;
+}
+
+use host::Registry;
+use std::time::Duration;
+use study::scenario::{self, Scenario};
+use study::{Run, RunError, Setup};
+
+/// Loads the built-in scenario of this name, or else the file; it may use the plugins that are linked into the program.
+pub fn load(name: &str) -> Result<Scenario, RunError> {
+    Ok(scenario::load(name, &Registry::linked()?)?)
+}
+
+/// Builds the scenario's plugins from those that are linked into the program.
+pub fn setup(scenario: &Scenario) -> Result<Setup<'_>, RunError> {
+    Setup::new(scenario, &scenario.choices, &Registry::linked()?)
+}
+
+/// Plans, and verifies the plan: on one thread, until the scenario's own limits end the search.
+///
+/// The same scenario and seed give the same plan. That none was found is no error: [`Run::why_not_solved`] says why.
+pub fn solve(scenario: &Scenario, seed: u64) -> Result<Run, RunError> {
+    let limit = scenario.problem.limits.budget.time_limit.map(Duration::from_secs_f64);
+    let watch = limit.map_or_else(Stopwatch::start, Stopwatch::limited);
+    setup(scenario)?.run(&watch.options(seed))
+}

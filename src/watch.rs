@@ -1,20 +1,18 @@
-//! The program's clock and what stops it: Ctrl-C and the time limit. The libraries own neither.
+//! The program's clock and what stops it: Ctrl-C and the time limit.
 
+use regrasp::Stopwatch;
 use regrasp::api::Interrupt;
 use regrasp::plan::StoppedBy;
 use regrasp::planner::Clock;
 use regrasp::study::Stop;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Set by Ctrl-C; signals know no object to set it in.
 static CTRL_C: AtomicBool = AtomicBool::new(false);
 
-/// A clock that started with the run, and its deadline.
-pub struct Watch {
-    start: Instant,
-    limit: Option<Duration>,
-}
+/// A stopwatch that Ctrl-C stops, too.
+pub struct Watch(Stopwatch);
 
 impl Watch {
     /// Starts the clock; from now on Ctrl-C asks the run to stop, and a second one ends the program at once.
@@ -25,24 +23,24 @@ impl Watch {
                 std::process::exit(130);
             }
         });
-        Self { start: Instant::now(), limit: limit_s.map(Duration::from_secs_f64) }
+        Self(limit_s.map(Duration::from_secs_f64).map_or_else(Stopwatch::start, Stopwatch::limited))
     }
 }
 
 impl Clock for Watch {
     fn seconds(&self) -> f64 {
-        self.start.elapsed().as_secs_f64()
+        self.0.seconds()
     }
 }
 
 impl Interrupt for Watch {
     fn interrupted(&self) -> bool {
-        CTRL_C.load(Ordering::Relaxed) || self.limit.is_some_and(|limit| self.start.elapsed() >= limit)
+        CTRL_C.load(Ordering::Relaxed) || self.0.interrupted()
     }
 }
 
 impl Stop for Watch {
     fn cause(&self) -> StoppedBy {
-        if CTRL_C.load(Ordering::Relaxed) { StoppedBy::Interrupt } else { StoppedBy::TimeLimit }
+        if CTRL_C.load(Ordering::Relaxed) { StoppedBy::Interrupt } else { self.0.cause() }
     }
 }

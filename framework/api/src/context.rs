@@ -56,6 +56,13 @@ pub struct Context<'a> {
     interrupt: &'a dyn Interrupt,
 }
 
+impl Context<'static> {
+    /// The context of a call that is made by hand, in a test or an experiment: nothing interrupts it.
+    pub fn seeded(seed: u64) -> Self {
+        Self::new(Random::from_key(seed, 0, 0, 0), &Uninterrupted)
+    }
+}
+
 impl<'a> Context<'a> {
     /// A context with the given random stream and interrupt and empty counts.
     pub fn new(random: Random, interrupt: &'a dyn Interrupt) -> Self {
@@ -96,7 +103,7 @@ mod tests {
 
     #[test]
     fn counts_by_slot_and_reason_and_adds_up() {
-        let mut context = Context::new(Random::from_key(0, 0, 0, 0), &Uninterrupted);
+        let mut context = Context::seeded(0);
         context.count_call(Slot::Sampler);
         assert_eq!(context.reject(Slot::Sampler, Reason::Reach), Reason::Reach);
         let mut sum = context.tally.clone();

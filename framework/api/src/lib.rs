@@ -9,8 +9,43 @@
 //! - [`LocalPlanner`]: connects two configurations by sliding, rolling or regrasping;
 //! - [`GraphStrategy`]: what to do next with the manipulation graph.
 //!
-//! A call is handed the immutable [`Task`] and a mutable [`Context`] (random stream, budget, counts). All quantities are in SI
-//! units; `X_HO` is the pose of frame O in frame H (see [`Pose`]).
+//! A call is handed the immutable [`Task`] and a mutable [`Context`] (random stream, budget, counts); [`Hand`] and [`Clearance`] are services
+//! that it may ask. All quantities are in SI units; `X_HO` is the pose of frame O in frame H (see [`Pose`]).
+//!
+//! A plugin is a type that implements its role, and an [`Entry`] that says how it is called, which settings it takes and how it is built. This
+//! is a whole one:
+//!
+//! ```
+//! use regrasp_api::{Build, Cone, Contact, ContactModel, Entry, NoSettings, Settings, Slot, check_settings};
+//!
+//! /// Point contact with friction, of which only 70 % are relied on.
+//! struct Cautious;
+//!
+//! impl ContactModel for Cautious {
+//!     fn cone(&self, _contact: &Contact, mu: f64) -> Cone<'_> {
+//!         Cone::Elliptic { mu: 0.7 * mu, gamma: 0.0 }
+//!     }
+//!
+//!     fn fewest_contacts(&self) -> usize {
+//!         3
+//!     }
+//! }
+//!
+//! regrasp_api::inventory::submit! {
+//!     Entry {
+//!         id: "contact-model/cautious",
+//!         slots: &[Slot::ContactModel],
+//!         summary: "point contact with 70 % of the friction",
+//!         references: &[],
+//!         schema: NoSettings::schema,
+//!         check: check_settings::<NoSettings>,
+//!         build: Build::ContactModel(|_settings, _parts| Ok(Box::new(Cautious))),
+//!     }
+//! }
+//! assert!(regrasp_api::inventory::iter::<Entry>().any(|entry| entry.id == "contact-model/cautious"));
+//! ```
+//!
+//! `regrasp new-plugin ROLE NAME` writes such a crate with its tests; the `regrasp` package plans with it.
 
 mod configuration;
 mod context;

@@ -7,7 +7,7 @@ mod plan_file;
 pub use error::*;
 
 use crate::scenario::{Scenario, ScenarioError};
-use regrasp_api::{Clearance, GuardedService, Hand, Interrupt, Parts};
+use regrasp_api::{Clearance, GuardedService, Hand, Interrupt, Parts, Pose, PoseDescription};
 use regrasp_host::{Choices, PluginSet, Registry, Source};
 use regrasp_plan::{Plan, StoppedBy};
 use regrasp_planner::{Clock, Drivers, Outcome, PlanError, Progress, Request, Status, Stuck};
@@ -108,6 +108,8 @@ pub struct Setup<'a> {
     scenario: &'a Scenario,
     choices: Choices,
     clearance: SceneClearance,
+    /// The object's at the start and at the goals, in turn.
+    poses: Vec<Pose>,
     plugins: PluginSet,
     /// Whether some plugin comes from a library: a panic of hand or clearance could not leave it.
     has_loaded: bool,
@@ -127,13 +129,13 @@ impl<'a> Setup<'a> {
             Path::new(""),
         )
         .map_err(|error| scenario.refuse(&error))?;
-        check_poses(scenario, &clearance)?;
+        let poses = poses(scenario, &clearance)?;
         let parts = Parts { object: &scenario.object, hand: scenario.hand.as_ref() };
         let plugins = PluginSet::build(registry, &choices, &parts)?;
         let loaded =
             |id: &str| registry.find(id).is_some_and(|entry| registry.source(entry) != Source::BuiltIn);
         let has_loaded = choices.iter().any(|(_, choice)| loaded(&choice.id));
-        Ok(Self { scenario, choices, clearance, plugins, has_loaded })
+        Ok(Self { scenario, choices, clearance, poses, plugins, has_loaded })
     }
 
     /// The plugins with full ids and complete settings.
@@ -218,19 +220,17 @@ impl<'a> Setup<'a> {
     }
 }
 
-/// Refuses poses of start and goals at which the object itself is in collision: no grasp could mend that.
-fn check_poses(scenario: &Scenario, clearance: &SceneClearance) -> Result<(), ScenarioError> {
+/// The poses of start and goals; refuses those at which the object itself is in collision: no grasp could mend that.
+fn poses(scenario: &Scenario, clearance: &SceneClearance) -> Result<Vec<Pose>, ScenarioError> {
     let problem = &scenario.problem;
     let start = ("start.pose".to_owned(), &problem.start.pose);
     let goals = problem.goal.iter().enumerate().map(|(i, goal)| (format!("goal[{i}].pose"), &goal.pose));
-    for (key, pose) in iter::once(start).chain(goals) {
+    let free = |(key, pose): (String, &PoseDescription)| {
         let X_HO = pose.pose().map_err(|reason| scenario.refuse(&format!("`{key}`: {reason}")))?;
-        if let Err(pair) = clearance.object_free(&X_HO) {
-            let fix = "move one of them";
-            return Err(scenario.refuse(&error::collision(scenario, &key, pair, fix)));
-        }
-    }
-    Ok(())
+        let overlap = |pair| scenario.refuse(&error::collision(scenario, &key, pair, "move one of them"));
+        clearance.object_free(&X_HO).map_err(overlap).map(|()| X_HO)
+    };
+    iter::once(start).chain(goals).map(free).collect()
 }
 
 fn stopped_by(outcome: &Outcome, stop: &dyn Stop) -> Option<StoppedBy> {
