@@ -43,7 +43,7 @@ fn stages(motion: &Motion) -> Vec<Stage<'_>> {
 }
 
 fn replayed(plan: &Plan, settings: &ReplaySettings) -> ReplayReport {
-    let motion = regrasp::plan::motion(&plan.segments).unwrap();
+    let motion = regrasp::plan::motion(&plan).unwrap();
     replay(&plan.scenario.problem, Path::new(""), &stages(&motion), settings).unwrap()
 }
 
@@ -60,7 +60,7 @@ fn plans_whose_grasps_hold_the_weight_arrive() {
         assert_eq!(report.stages.len(), plan.segments.len());
         assert!(report.distance() < 5e-3 && report.angle() < 5_f64.to_radians(), "{}", report.distance());
         assert!(report.stages.iter().all(|stage| stage.margin > 0.0));
-        let motion = regrasp::plan::motion(&plan.segments).unwrap();
+        let motion = regrasp::plan::motion(&plan).unwrap();
         let goal = motion.segments.last().and_then(|segment| segment.states.last()).unwrap().X_HO;
         let (last, moved) = (report.stages.last().unwrap(), report.X_HO.translation.vector);
         assert_eq!(last.end_distance, (moved - goal.translation.vector).norm());

@@ -49,7 +49,7 @@ impl<'a> Told<'a> {
         if plan.claims.contact.cone.is_some_and(|cone| cone.gamma > 0.0) {
             return Err(Failure::bad_input(format!("{}: {}", args.plan.display(), PhysicsError::Torsion)));
         }
-        let motion = regrasp::plan::motion(&plan.segments).map_err(Failure::bad_input)?;
+        let motion = regrasp::plan::motion(plan).map_err(Failure::bad_input)?;
         let mut problem = plan.scenario.problem.clone();
         problem.gravity = args.gravity.unwrap_or(problem.gravity);
         let settings = settings(args, &problem);

@@ -26,16 +26,6 @@ pub enum ExportError {
         /// What is wrong.
         reason: String,
     },
-    /// States that do not fit the hand.
-    #[error(
-        "segment {segment}, state {state} has other fingers or joints than the plan's hand; `regrasp verify` says more"
-    )]
-    Misfit {
-        /// The segment.
-        segment: usize,
-        /// The state in it.
-        state: usize,
-    },
     /// No motion.
     #[error("the plan has no motion to export")]
     Empty,

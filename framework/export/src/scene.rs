@@ -28,8 +28,10 @@ impl<'a> Scene<'a> {
         let problem = &plan.scenario.problem;
         let hand = ChainHand::new(problem.hand.clone())?;
         let object = regrasp_world::load_object(&problem.object, Path::new(""))?;
-        let motion = regrasp_plan::motion(&plan.segments)?;
-        check(&motion, &problem.hand)?;
+        let motion = regrasp_plan::motion(plan)?;
+        if motion.segments.iter().all(|segment| segment.states.is_empty()) {
+            return Err(ExportError::Empty);
+        }
         let names = Names::new(&problem.hand, &problem.obstacle);
         let forces = Forces::new(plan, &motion, (&hand, &object))?;
         let solids = Solids::new(problem)?;
@@ -95,21 +97,6 @@ pub(crate) struct Driver {
     pub joint: usize,
     pub multiplier: f64,
     pub offset: f64,
-}
-
-/// Whether every state has the hand's fingers and joints.
-fn check(motion: &Motion, hand: &HandDescription) -> Result<(), ExportError> {
-    let counts: Vec<usize> = hand.finger.iter().map(|finger| finger.joint.len()).collect();
-    for (segment, part) in motion.segments.iter().enumerate() {
-        for (state, q) in part.states.iter().enumerate() {
-            let joints = q.joints.iter().map(|(_, joints)| joints.len());
-            if !joints.eq(counts.iter().copied()) {
-                return Err(ExportError::Misfit { segment, state });
-            }
-        }
-    }
-    let is_empty = motion.segments.iter().all(|segment| segment.states.is_empty());
-    if is_empty { Err(ExportError::Empty) } else { Ok(()) }
 }
 
 fn origins(hand: &HandDescription) -> Result<Vec<Vec<Pose>>, ExportError> {

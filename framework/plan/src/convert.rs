@@ -1,12 +1,12 @@
 //! Between the planner's motion and the file's segments.
 
 use crate::{
-    ContactRecord, Motion, PoseRecord, Segment, SegmentKind, SegmentName, SegmentRecord, StateRecord,
+    ContactRecord, Motion, Plan, PoseRecord, Segment, SegmentKind, SegmentName, SegmentRecord, StateRecord,
 };
 use nalgebra::{Quaternion, Translation3};
 use regrasp_api::{
-    Configuration, Contact, FingerIndex, FingerJoints, Hand, MAX_FINGER_JOINTS, MAX_FINGERS, PerFinger, Pose,
-    Rotation, Vec3,
+    Configuration, Contact, FingerDescription, FingerIndex, FingerJoints, Hand, MAX_FINGER_JOINTS,
+    MAX_FINGERS, PerFinger, Pose, Rotation, Vec3,
 };
 use thiserror::Error;
 
@@ -38,7 +38,9 @@ pub enum ConvertError {
         reason: String,
     },
     /// A regrasp without its finger, or a transfer with one.
-    #[error("segment {segment}: a regrasp names the finger that moves, a transfer names none")]
+    #[error(
+        "segment {segment}: a regrasp names the one of the hand's fingers that moves, a transfer names none"
+    )]
     Finger {
         /// The segment.
         segment: usize,
@@ -88,24 +90,42 @@ pub fn state_record(q: &Configuration, time: f64, hand: &dyn Hand) -> StateRecor
     }
 }
 
-/// The motion that a file's segments describe, with its times. Contacts come back with [`UNKNOWN_FACET`].
-pub fn motion(segments: &[SegmentRecord]) -> Result<Motion, ConvertError> {
+/// The motion that a plan describes, with its times. Contacts come back with [`UNKNOWN_FACET`].
+///
+/// Every state has as many fingers and joints as the plan's hand; nothing else is judged here.
+pub fn motion(plan: &Plan) -> Result<Motion, ConvertError> {
+    let fingers = &plan.scenario.problem.hand.finger;
     let one = |(index, record): (usize, &SegmentRecord)| {
         let kind = match (record.kind, record.finger) {
             (SegmentName::Transfer, None) => SegmentKind::Transfer,
-            (SegmentName::Regrasp, Some(finger)) => SegmentKind::Regrasp(FingerIndex(finger)),
+            (SegmentName::Regrasp, Some(finger)) if usize::from(finger) < fingers.len() => {
+                SegmentKind::Regrasp(FingerIndex(finger))
+            }
             _ => return Err(ConvertError::Finger { segment: index }),
         };
-        let state = |(state, record): (usize, &StateRecord)| {
-            configuration(record).map_err(|reason| ConvertError::Form { segment: index, state, reason })
-        };
+        let state =
+            |(state, record): (usize, &StateRecord)| {
+                fits(record, fingers)
+                    .and_then(|()| configuration(record))
+                    .map_err(|reason| ConvertError::Form { segment: index, state, reason })
+            };
         Ok(Segment {
             kind,
             states: record.states.iter().enumerate().map(state).collect::<Result<_, _>>()?,
             times: record.states.iter().map(|state| state.time).collect(),
         })
     };
-    Ok(Motion { segments: segments.iter().enumerate().map(one).collect::<Result<_, _>>()? })
+    Ok(Motion { segments: plan.segments.iter().enumerate().map(one).collect::<Result<_, _>>()? })
+}
+
+/// Whether a state has the hand's fingers and joints.
+fn fits(state: &StateRecord, fingers: &[FingerDescription]) -> Result<(), String> {
+    let (joints, wanted) =
+        (state.joints.iter().map(Vec::len), fingers.iter().map(|finger| finger.joint.len()));
+    if joints.eq(wanted) {
+        return Ok(());
+    }
+    Err("other fingers or joints than the plan's hand has; `regrasp verify` says more".into())
 }
 
 /// The configuration that a file's state describes; `Err` says what does not fit.

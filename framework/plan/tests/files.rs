@@ -42,7 +42,7 @@ fn the_motion_comes_back_exactly() {
     let hand = Fingertips::new(3, 1.0, 10.0);
     let mut timed = walk(5, 3, 6);
     assign_times(&mut timed, &hand, &TimingLimits::default()).unwrap();
-    let back = motion(&parse(&text(&plan(&timed, &hand))).unwrap().segments).unwrap();
+    let back = motion(&parse(&text(&plan(&timed, &hand))).unwrap()).unwrap();
     assert_eq!(timed, back);
     let (q, record) = (&timed.segments[1].states[2], &records(&timed, &hand).unwrap()[1].states[2]);
     let contact = record.contacts[1].unwrap();
@@ -70,13 +70,19 @@ fn an_untimed_motion_has_no_records() {
 fn segments_of_another_form_are_no_motion() {
     let mut plan = example();
     plan.segments[1].finger = None;
-    assert_eq!(motion(&plan.segments), Err(ConvertError::Finger { segment: 1 }));
+    assert_eq!(motion(&plan), Err(ConvertError::Finger { segment: 1 }));
     let mut plan = example();
     plan.segments[2].states[1].contacts.pop();
-    assert!(matches!(motion(&plan.segments), Err(ConvertError::Form { segment: 2, state: 1, .. })));
+    assert!(matches!(motion(&plan), Err(ConvertError::Form { segment: 2, state: 1, .. })));
     let mut plan = example();
     plan.segments[0].states[3].joints[1] = vec![0.0; 8];
-    assert!(matches!(motion(&plan.segments), Err(ConvertError::Form { segment: 0, state: 3, .. })));
+    assert!(matches!(motion(&plan), Err(ConvertError::Form { segment: 0, state: 3, .. })));
+    let mut plan = example();
+    plan.segments[0].states[2].joints[1].pop();
+    assert!(matches!(motion(&plan), Err(ConvertError::Form { segment: 0, state: 2, .. })));
+    let mut plan = example();
+    plan.segments[1].finger = Some(9);
+    assert_eq!(motion(&plan), Err(ConvertError::Finger { segment: 1 }));
 }
 
 #[test]
@@ -136,7 +142,7 @@ proptest! {
             } else {
                 let place = (place * bytes.len() as f64) as usize;
                 bytes[place] = byte;
-                let _ = from_json(&bytes, Path::new("p")).map(|plan| motion(&plan.segments));
+                let _ = from_json(&bytes, Path::new("p")).map(|plan| motion(&plan));
             }
         });
     }

@@ -110,19 +110,21 @@ pub fn walk(seed: u64, fingers: usize, states: usize) -> Motion {
 
 /// A plan about a ball, with the given motion.
 pub fn plan(motion: &Motion, hand: &dyn Hand) -> Plan {
-    let problem = r#"{
-        "hand": {"name": "tips", "fingertip_radius": 0.01, "finger": []},
+    let joint = serde_json::json!({"name": "j", "kind": "prismatic", "axis": [1, 0, 0], "lower": -1, "upper": 1});
+    let finger = serde_json::json!({"name": "tip", "joint": [joint, joint, joint], "rest": [0, 0, 0]});
+    let problem = serde_json::json!({
+        "hand": {"name": "tips", "fingertip_radius": 0.01, "finger": vec![finger; hand.finger_count()]},
         "object": {"shape": {"kind": "sphere", "radius": 0.03, "facets": 320}, "friction": 0.8},
         "start": {"pose": {"position": [0.1, 0.2, 0.3]}},
-        "goal": [{"pose": {"axis": [0, 0, 1], "angle_deg": 90.0}}]
-    }"#;
+        "goal": [{"pose": {"axis": [0, 0, 1], "angle_deg": 90.0}}],
+    });
     let choice = PluginChoice { id: "sampler/rlg".into(), settings: serde_json::json!({"tries": 30}) };
     Plan {
         format: Format::RegraspPlan,
         version: VERSION,
         scenario: ResolvedScenario {
             name: "test".into(),
-            problem: serde_json::from_str(problem).unwrap(),
+            problem: serde_json::from_value(problem).unwrap(),
             plugins: BTreeMap::from([(Slot::Sampler, choice)]),
         },
         seed: 7,
