@@ -48,10 +48,13 @@ fn syntax_errors_and_unknown_keys() {
 
 #[test]
 fn numbers_out_of_range_nan_and_infinite() {
-    refused(&sphere("friction = 0.8", "friction = -1.0"), &["`object.friction` = -1 is outside 0..=10"]);
+    refused(&sphere("friction = 0.8", "friction = -1.0"), &["-1 is outside 0..=10", "key `object.friction`"]);
     refused(&sphere(MASS, "mass = nan"), &["nan is outside the finite numbers", "`object.mass`"]);
     refused(&sphere(MASS, "mass = inf"), &["inf is outside the finite numbers"]);
-    refused(&sphere("radius = 0.030", "radius = 0.0"), &["`object.shape.radius` = 0 is outside"]);
+    refused(
+        &sphere("radius = 0.030", "radius = 0.0"),
+        &["0 is outside 0.000001..=1000 m", "key `object.shape.radius`"],
+    );
     let limits = format!("[limits.tolerances]\nclosure = 5.0\n\n{START}");
     refused(&sphere(START, &limits), &["5 is outside 0.0000001..=0.01 m", "`limits.tolerances.closure`"]);
     let desk = Desk::new();

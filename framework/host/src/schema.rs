@@ -3,118 +3,8 @@
 //! Serde's own messages lose the path inside tagged enumerations; this walk keeps it. It knows the part of JSON Schema that `schemars`
 //! writes for plain structs, options, arrays and tagged enumerations; what it does not know it lets pass, for serde to judge.
 
-use crate::{did_you_mean, near};
+use crate::{Departure, Fault, KeyPath, near, unit};
 use serde_json::{Map, Value};
-use std::fmt;
-use thiserror::Error;
-
-/// One step into nested data.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// To the value of a key.
-    Key(String),
-    /// To an item, counted from 0.
-    Item(usize),
-}
-
-/// A place in nested data, written `goal[1].pose.position`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct KeyPath(pub Vec<Step>);
-
-impl KeyPath {
-    /// The path one key deeper.
-    #[must_use]
-    pub fn key(&self, key: &str) -> Self {
-        self.with(Step::Key(key.to_owned()))
-    }
-
-    /// The path one item deeper.
-    #[must_use]
-    pub fn item(&self, item: usize) -> Self {
-        self.with(Step::Item(item))
-    }
-
-    fn with(&self, step: Step) -> Self {
-        Self(self.0.iter().cloned().chain([step]).collect())
-    }
-}
-
-impl fmt::Display for KeyPath {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, step) in self.0.iter().enumerate() {
-            match step {
-                Step::Key(key) if i > 0 => write!(f, ".{key}")?,
-                Step::Key(key) => write!(f, "{key}")?,
-                Step::Item(item) => write!(f, "[{item}]")?,
-            }
-        }
-        Ok(())
-    }
-}
-
-/// How data departs from a schema.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Fault {
-    /// A key that the schema does not know; its path ends with it.
-    #[error("unknown key; {}", suggestion(.near, .known))]
-    UnknownKey {
-        /// Known keys that resemble it.
-        near: Vec<String>,
-        /// Every known key.
-        known: Vec<String>,
-    },
-    /// A key is missing.
-    #[error("the key `{key}` is missing")]
-    Missing {
-        /// The key.
-        key: String,
-    },
-    /// A value of the wrong type.
-    #[error("{found} is not {expected}")]
-    Type {
-        /// The type that the schema asks for.
-        expected: String,
-        /// The value that was found.
-        found: String,
-    },
-    /// A text that is none of the allowed ones.
-    #[error("{found} is not one of the allowed values; {}", suggestion(.near, .known))]
-    Choice {
-        /// The value that was found.
-        found: String,
-        /// Allowed values that resemble it.
-        near: Vec<String>,
-        /// Every allowed value.
-        known: Vec<String>,
-    },
-    /// A number below the schema's minimum or above its maximum.
-    #[error("{found} is outside {range}")]
-    Range {
-        /// The number that was found.
-        found: String,
-        /// The allowed range.
-        range: String,
-    },
-}
-
-fn suggestion(near: &[String], known: &[String]) -> String {
-    match (near, known) {
-        ([], []) => "there are none here".to_owned(),
-        ([], known) => format!("known are `{}`", known.join("`, `")),
-        (near, _) => did_you_mean(near),
-    }
-}
-
-/// The first place where data depart from a schema.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("`{path}`: {fault}")]
-pub struct Departure {
-    /// Where.
-    pub path: KeyPath,
-    /// How.
-    pub fault: Fault,
-}
 
 /// Finds the first place, in the order of the keys, where `value` departs from `schema`.
 pub fn check_schema(value: &Value, schema: &Value) -> Result<(), Departure> {
@@ -192,7 +82,11 @@ impl<'a> Walk<'a> {
             return Err(depart(path, Fault::Type { expected, found }));
         }
         let Some(item_schema) = schema.get("items") else { return Ok(()) };
-        items.iter().enumerate().try_for_each(|(i, item)| self.check(item, item_schema, &path.item(i)))
+        let check = |(i, item): (usize, &Value)| {
+            let path = path.item(i);
+            self.check(item, item_schema, &path).map_err(|departure| with_unit(departure, &path, schema))
+        };
+        items.iter().enumerate().try_for_each(check)
     }
 
     fn check_alternatives(
@@ -292,8 +186,22 @@ fn check_bounds(value: &Value, schema: &Value, path: &KeyPath) -> Result<(), Dep
         return Ok(());
     }
     let text = |bound: Option<f64>| bound.map(|x| x.to_string()).unwrap_or_default();
-    let range = format!("{}..={}", text(low), text(high)).trim_end_matches('=').to_owned();
+    let range = format!("{}..={}", text(low), text(high)).trim_end_matches('=').to_owned() + &unit_of(schema);
     Err(depart(path, Fault::Range { found: shown(value), range }))
+}
+
+/// The unit of a list's numbers stands in the list's description.
+fn with_unit(mut departure: Departure, item: &KeyPath, list: &Value) -> Departure {
+    if let (true, Fault::Range { range, .. }) = (departure.path == *item, &mut departure.fault) {
+        *range += &unit_of(list);
+    }
+    departure
+}
+
+/// A blank and the unit that the schema's description gives; nothing where there is none, or where it depends on something else.
+fn unit_of(schema: &Value) -> String {
+    let description = schema.get("description").and_then(Value::as_str).unwrap_or_default();
+    unit(description).filter(|unit| !unit.contains(';')).map_or(String::new(), |unit| format!(" {unit}"))
 }
 
 fn is_of_type(value: &Value, name: &str) -> bool {
@@ -325,6 +233,8 @@ fn shown(value: &Value) -> String {
     match value {
         Value::Object(_) => "a table".into(),
         Value::Array(_) => "a list".into(),
+        // As a person writes it: 5, not 5.0.
+        Value::Number(number) if number.is_f64() => number.as_f64().map_or(String::new(), |x| x.to_string()),
         other => other.to_string(),
     }
 }
@@ -383,7 +293,11 @@ mod tests {
         let text = refusal::<Limits>(json!({"resolution": {"retreat": [0.1]}}));
         assert_eq!(text, "`resolution.retreat`: a list of 1 values is not a list of 2 values");
         let text = refusal::<Limits>(json!({"budget": {"max_nodes": -1}}));
-        assert_eq!(text, "`budget.max_nodes`: -1 is outside 0..");
+        assert_eq!(text, "`budget.max_nodes` = -1 is outside 1..=10000000");
+        let text = refusal::<Limits>(json!({"resolution": {"lift": 5.0}}));
+        assert_eq!(text, "`resolution.lift` = 5 is outside 0.0001..=0.2 m");
+        let text = refusal::<Limits>(json!({"resolution": {"retreat": [0.1, -0.5]}}));
+        assert_eq!(text, "`resolution.retreat[1]` = -0.5 is outside 0..=0.2 m");
         let text = refusal::<Limits>(json!({"budget": {"max_nodes": 1.5}}));
         assert_eq!(text, "`budget.max_nodes`: 1.5 is not a whole number");
     }

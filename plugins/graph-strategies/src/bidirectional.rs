@@ -26,8 +26,10 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 pub struct BidirectionalSettings {
     /// Probability, in 0..=1, that the node nearest to the other tree's random node is extended, not a random one.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub greed: f64,
     /// Probability, in 0..=1, of a sample anywhere in place of one near a tree.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub anywhere: f64,
 }
 

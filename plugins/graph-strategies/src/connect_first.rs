@@ -25,6 +25,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 pub struct ConnectFirstSettings {
     /// Nearest nodes of other components that a node is tried to be connected with, 1..=1000.
+    #[schemars(range(min = 1, max = 1000))]
     pub neighbours: usize,
 }
 

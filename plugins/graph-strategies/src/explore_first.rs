@@ -25,10 +25,13 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 pub struct ExploreFirstSettings {
     /// Size of the graph, in nodes, at which exploring ends, 0..=100000.
+    #[schemars(range(min = 0, max = 100_000))]
     pub nodes: usize,
     /// Share of the budget of nodes after which exploring ends at the latest, in 0..=1.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub fraction: f64,
     /// Nearest nodes of other components that a node is tried to be connected with, 1..=1000.
+    #[schemars(range(min = 1, max = 1000))]
     pub neighbours: usize,
 }
 

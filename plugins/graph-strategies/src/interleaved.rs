@@ -21,10 +21,13 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 pub struct InterleavedSettings {
     /// Probability of α = 1 for an empty graph, in 0..=1.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub start: f64,
     /// Probability of α = 1 for a large graph, in 0..=1.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub end: f64,
     /// Number of nodes after which 63 % of the way from `start` to `end` is made, 0.1..=1e6.
+    #[schemars(range(min = 0.1, max = 1e6))]
     pub growth: f64,
 }
 

@@ -30,8 +30,10 @@ const CONNECTED_NEIGHBOURS: usize = 5;
 #[serde(deny_unknown_fields, default)]
 pub struct LazySettings {
     /// Nearest nodes that a new node gets unchecked edges to, 1..=1000.
+    #[schemars(range(min = 1, max = 1000))]
     pub neighbours: usize,
     /// Probability, in 0..=1, that while start and goal are apart two components are tried by transfer and regrasps.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub connect: f64,
 }
 

@@ -19,6 +19,7 @@ const SLOT: Slot = Slot::GraspPlanner;
 pub struct LinearSettings {
     /// Largest change of a joint (rad; m where prismatic) from one state to the next: more is a jump to another branch of
     /// the inverse kinematics. Range 0.01 to 3. Our choice: close to a stretched finger a step of 1.5 mm turns the joint by 0.3 rad.
+    #[schemars(range(min = 0.01, max = 3.0))]
     pub joint_jump: f64,
 }
 

@@ -22,12 +22,16 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 pub struct RlgSettings {
     /// Poses of the object that one call tries, 1..=100000.
+    #[schemars(range(min = 1, max = 100_000))]
     pub poses: usize,
     /// Contacts that are tried for each finger at one pose, 1..=10000.
+    #[schemars(range(min = 1, max = 10_000))]
     pub contacts: usize,
     /// The fraction of poses drawn with any orientation, in 0..=1; the others are drawn near the motion from start to goal.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub anywhere: f64,
     /// How far (degrees, 0..=180) the latter may turn away from that motion.
+    #[schemars(range(min = 0.0, max = 180.0))]
     pub spread_deg: f64,
 }
 

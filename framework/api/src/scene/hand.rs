@@ -15,6 +15,7 @@ pub struct HandDescription {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub references: Vec<String>,
     /// Radius of every fingertip's ball (m).
+    #[schemars(range(min = 1e-4, max = 0.2))]
     pub fingertip_radius: f64,
     /// What touches the object: the ball itself, or a point.
     #[serde(default, skip_serializing_if = "Fingertip::is_ball")]
@@ -123,12 +124,15 @@ pub struct JointDescription {
     pub upper: f64,
     /// Largest speed (rad/s; m/s where prismatic).
     #[serde(default = "default_velocity")]
+    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0))]
     pub velocity: f64,
     /// Largest acceleration (rad/s²; m/s² where prismatic).
     #[serde(default = "default_acceleration")]
+    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0))]
     pub acceleration: f64,
     /// Largest effort (N·m; N where prismatic).
     #[serde(default = "default_effort")]
+    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0))]
     pub effort: f64,
     /// Which joint drives this one; absent where it moves by itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -148,9 +152,11 @@ pub struct Mimic {
     pub joint: String,
     /// By what its position is multiplied.
     #[serde(default = "default_multiplier")]
+    #[schemars(range(min = -100.0, max = 100.0))]
     pub multiplier: f64,
     /// What is added (rad; m where prismatic).
     #[serde(default)]
+    #[schemars(range(min = -10.0, max = 10.0))]
     pub offset: f64,
 }
 

@@ -8,16 +8,22 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 pub struct Tolerances {
     /// Largest distance between a holding fingertip and the surface (m).
+    #[schemars(range(min = 1e-7, max = 1e-2))]
     pub closure: f64,
     /// Largest net slip of a contact over one transfer (m).
+    #[schemars(range(min = 1e-7, max = 1e-2))]
     pub slip: f64,
     /// Largest angle between a contact's normal and the surface's (rad).
+    #[schemars(range(min = 1e-6, max = 0.5))]
     pub normal: f64,
     /// Least distance between bodies that may not touch (m).
+    #[schemars(range(min = 0.0, max = 0.1))]
     pub clearance: f64,
     /// Largest distance of the object from a goal's position (m).
+    #[schemars(range(min = 1e-9, max = 0.1))]
     pub goal_position: f64,
     /// Largest angle of the object from a goal's orientation (rad).
+    #[schemars(range(min = 1e-9, max = 1.0))]
     pub goal_angle: f64,
 }
 
@@ -39,24 +45,34 @@ impl Default for Tolerances {
 #[serde(deny_unknown_fields, default)]
 pub struct Resolution {
     /// Largest step of the object or a contact on a path in GS_n (m).
+    #[schemars(range(min = 1e-5, max = 0.1))]
     pub grasp_step: f64,
     /// Largest turn of the object in one step on a path in GS_n (rad).
+    #[schemars(range(min = 1e-4, max = 1.0))]
     pub grasp_turn: f64,
     /// Largest step of the object or a contact in a transfer (m).
+    #[schemars(range(min = 1e-5, max = 0.1))]
     pub transfer_step: f64,
     /// Largest turn of the object in one step of a transfer (rad).
+    #[schemars(range(min = 1e-4, max = 1.0))]
     pub transfer_turn: f64,
     /// Largest step of a fingertip in a regrasp (m).
+    #[schemars(range(min = 1e-5, max = 0.1))]
     pub regrasp_step: f64,
     /// Height above the surface at which a finger moves to its new contact (m).
+    #[schemars(range(min = 1e-4, max = 0.2))]
     pub lift: f64,
     /// Heights to which every holding finger must be able to retreat along its normal (m).
+    #[schemars(inner(range(min = 0.0, max = 0.2)))]
     pub retreat: [f64; 2],
     /// Distance that the planner keeps between bodies that may not touch (m), beyond the tolerance.
+    #[schemars(range(min = 0.0, max = 0.05))]
     pub clearance: f64,
     /// Distance that contacts keep from a sharp edge when they are chosen (m).
+    #[schemars(range(min = 0.0, max = 0.1))]
     pub edge_margin: f64,
     /// What the friction coefficient is multiplied with while planning, in (0, 1], so that transfers keep a margin.
+    #[schemars(range(min = 0.01, max = 1.0))]
     pub friction_margin: f64,
 }
 
@@ -84,11 +100,14 @@ impl Default for Resolution {
 pub struct Budget {
     /// Most nodes to generate for one goal. The default is five times what the hardest built-in scenario needs, and tens of seconds where
     /// there is no way.
+    #[schemars(range(min = 1, max = 10_000_000))]
     pub max_nodes: usize,
     /// Most seconds for the whole run; none where absent.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 1e7))]
     pub time_limit: Option<f64>,
     /// Tries of the smoother, per segment of the raw plan.
+    #[schemars(range(min = 0, max = 1_000_000))]
     pub smoothing: usize,
 }
 

@@ -11,20 +11,25 @@ pub enum Shape {
     /// A ball about the origin.
     Sphere {
         /// Radius (m).
+        #[schemars(range(min = 1e-6, max = 1e3))]
         radius: f64,
     },
     /// A box about the origin, along the axes.
     Box {
         /// Edge lengths (m).
+        #[schemars(inner(range(min = 1e-6, max = 1e3)))]
         size: [f64; 3],
     },
     /// All points within `radius` of a segment.
     Capsule {
         /// One end of the segment (m).
+        #[schemars(inner(range(min = -1e3, max = 1e3)))]
         from: [f64; 3],
         /// The other end (m).
+        #[schemars(inner(range(min = -1e3, max = 1e3)))]
         to: [f64; 3],
         /// Radius (m).
+        #[schemars(range(min = 1e-6, max = 1e3))]
         radius: f64,
     },
     /// Everything with `normal · x ≤ offset`.
@@ -32,6 +37,7 @@ pub enum Shape {
         /// Outward normal; its length does not matter.
         normal: [f64; 3],
         /// Distance of the plane from the origin along the normal (m).
+        #[schemars(range(min = -1e3, max = 1e3))]
         offset: f64,
     },
     /// A closed mesh.
@@ -72,6 +78,7 @@ pub struct MeshSource {
     pub file: Option<String>,
     /// What lengths are multiplied with: 0.001 for a file in millimetres. Default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1e-9, max = 1e9))]
     pub scale: Option<f64>,
     /// Turn the mesh inside out after reading. Default false.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -94,52 +101,66 @@ pub enum ObjectShape {
     /// A ball.
     Sphere {
         /// Radius (m).
+        #[schemars(range(min = 1e-6, max = 1e3))]
         radius: f64,
         /// Wished number of facets.
         #[serde(default = "default_facets")]
+        #[schemars(range(min = 12, max = 2_000_000))]
         facets: usize,
     },
     /// An ellipsoid along the axes.
     Ellipsoid {
         /// Half the length along x, y and z (m).
+        #[schemars(inner(range(min = 1e-6, max = 1e3)))]
         semi_axes: [f64; 3],
         /// Wished number of facets.
         #[serde(default = "default_facets")]
+        #[schemars(range(min = 12, max = 2_000_000))]
         facets: usize,
     },
     /// A box along the axes: 12 facets.
     Cuboid {
         /// Edge lengths (m).
+        #[schemars(inner(range(min = 1e-6, max = 1e3)))]
         size: [f64; 3],
     },
     /// A cylinder along z.
     Cylinder {
         /// Radius (m).
+        #[schemars(range(min = 1e-6, max = 1e3))]
         radius: f64,
         /// Length along z (m).
+        #[schemars(range(min = 1e-6, max = 1e3))]
         height: f64,
         /// Wished number of facets.
         #[serde(default = "default_facets")]
+        #[schemars(range(min = 12, max = 2_000_000))]
         facets: usize,
     },
     /// A cylinder along z with half balls at its ends.
     Capsule {
         /// Radius (m).
+        #[schemars(range(min = 1e-6, max = 1e3))]
         radius: f64,
         /// Length of the cylindrical part along z (m).
+        #[schemars(range(min = 1e-6, max = 1e3))]
         height: f64,
         /// Wished number of facets.
         #[serde(default = "default_facets")]
+        #[schemars(range(min = 12, max = 2_000_000))]
         facets: usize,
     },
     /// A ring about z.
     Torus {
         /// Distance of the tube's centre from the z axis (m).
+        #[schemars(range(min = 1e-6, max = 1e3))]
         ring_radius: f64,
         /// Radius of the tube (m).
+        #[schemars(range(min = 1e-6, max = 1e3))]
         tube_radius: f64,
         /// Wished number of facets.
         #[serde(default = "default_facets")]
+        #[schemars(range(min = 12, max = 2_000_000))]
         facets: usize,
     },
     /// A mesh.
@@ -157,8 +178,10 @@ pub struct ObjectDescription {
     pub shape: ObjectShape,
     /// Mass (kg), uniformly spread.
     #[serde(default = "default_mass")]
+    #[schemars(range(min = 1e-6, max = 1e3))]
     pub mass: f64,
-    /// Coefficient of friction between object and fingertips, no unit.
+    /// Coefficient of friction between object and fingertips (no unit).
+    #[schemars(range(min = 0.0, max = 10.0))]
     pub friction: f64,
 }
 

@@ -104,8 +104,10 @@ pub struct GoalDescription {
 #[serde(deny_unknown_fields)]
 pub struct Workspace {
     /// Lowest coordinates in the hand's frame (m).
+    #[schemars(inner(range(min = -1e3, max = 1e3)))]
     pub lower: [f64; 3],
     /// Highest coordinates in the hand's frame (m).
+    #[schemars(inner(range(min = -1e3, max = 1e3)))]
     pub upper: [f64; 3],
 }
 
@@ -122,6 +124,7 @@ pub struct Problem {
     pub obstacle: Vec<ObstacleDescription>,
     /// Acceleration of gravity in the hand's frame (m/s²).
     #[serde(default = "default_gravity")]
+    #[schemars(inner(range(min = -1e3, max = 1e3)))]
     pub gravity: [f64; 3],
     /// Where the object starts.
     pub start: StartDescription,

@@ -33,6 +33,7 @@ pub struct ScenarioFile {
     pub obstacle: Vec<ObstacleDescription>,
     /// Acceleration of gravity in the hand's frame (m/s²).
     #[serde(default = "default_gravity")]
+    #[schemars(inner(range(min = -1e3, max = 1e3)))]
     pub gravity: [f64; 3],
     /// Where the object starts.
     pub start: StartDescription,
@@ -85,6 +86,7 @@ pub struct HandChoice {
     pub tips: Vec<String>,
     /// Radius of the balls that stand for the fingertips (m); where absent, that of the tip links' own balls.
     #[serde(default)]
+    #[schemars(range(min = 1e-4, max = 0.2))]
     pub fingertip_radius: Option<f64>,
     /// Centres of these balls in the frames of the tip links (m): one for all, or one for each finger; where absent, they are fitted to the tip
     /// links' shapes.
@@ -98,9 +100,11 @@ pub struct HandChoice {
     pub packages: Vec<String>,
     /// The most convex pieces (1 to 64) that each mesh is taken apart into; 1, its convex hull, where absent.
     #[serde(default)]
+    #[schemars(range(min = 1, max = 64))]
     pub mesh_pieces: Option<usize>,
     /// Largest acceleration of every joint (rad/s²); where absent, what the URDF says, or else 20.
     #[serde(default)]
+    #[schemars(range(min = 1e-3, max = 1e9))]
     pub acceleration: Option<f64>,
 }
 

@@ -136,11 +136,14 @@ fn unknown_keys_have_their_line_and_the_nearest_known_one() {
 #[test]
 fn numbers_outside_their_range_are_refused_with_it() {
     assert_says(&refusal("friction = 0.8", "friction = -0.8"), &["-0.8 is outside 0..=10", &at("friction")]);
-    assert_says(&refusal("radius = 0.030", "radius = 0.0"), &["`object.shape.radius` = 0 is outside", " m"]);
+    assert_says(
+        &refusal("radius = 0.030", "radius = 0.0"),
+        &["0 is outside 0.000001..=1000 m", "key `object.shape.radius`"],
+    );
     let limits = |text: &str| refusal("[start]", &format!("[limits]\n{text}\n\n[start]"));
     assert_says(&limits("tolerances.slip = 1.0"), &["1 is outside 0.0000001..=0.01 m", " | tolerances.slip"]);
     assert_says(&limits("budget.max_nodes = 0"), &["0 is outside 1..=10000000"]);
-    assert_says(&limits("budget.max_nodes = -4"), &["-4 is outside 0.."]);
+    assert_says(&limits("budget.max_nodes = -4"), &["-4 is outside 1..=10000000"]);
     assert_says(&limits("resolution.friction_margin = 1.5"), &["1.5 is outside 0.01..=1"]);
 }
 

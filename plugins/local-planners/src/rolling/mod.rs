@@ -24,8 +24,10 @@ const SLOT: Slot = Slot::TransferPlanner;
 pub struct RollingSettings {
     /// What part of the task's tolerances for closure and slip the motion may use, in 0.01 to 1. Default: half, as the plan's
     /// meaning asks.
+    #[schemars(range(min = 0.01, max = 1.0))]
     pub tolerance_share: f64,
     /// How often a step may be halved before the contact counts as lost, 0 to 20. Our choice.
+    #[schemars(range(min = 0, max = 20))]
     pub halvings: usize,
 }
 

@@ -20,10 +20,13 @@ const ID: &str = "local-planner/rrt";
 pub struct RrtSettings {
     /// Most nodes of the two random trees together, 0 (no search) to 100,000. Our choice: enough to pass an obstacle, little enough
     /// that a hopeless search does not hold the planner up.
+    #[schemars(range(min = 0, max = 100_000))]
     pub nodes: usize,
     /// Longest edge of a tree, as a bound of the finger's travel (m), 1e-3 to 0.5. Our choice.
+    #[schemars(range(min = 1e-3, max = 0.5))]
     pub extend: f64,
     /// Tries to shorten the path that the trees find, 0 to 10,000. Our choice.
+    #[schemars(range(min = 0, max = 10_000))]
     pub shortcuts: usize,
 }
 

@@ -36,12 +36,16 @@ const EDGE_DRAWS: usize = 100;
 #[serde(deny_unknown_fields, default)]
 pub struct GraspFirstSettings {
     /// Grasps of the object that one call draws, stable or not, 1..=1000000.
+    #[schemars(range(min = 1, max = 1_000_000))]
     pub grasps: usize,
     /// Poses that are tried for each stable grasp, 1..=10000; one where the request prescribes it.
+    #[schemars(range(min = 1, max = 10_000))]
     pub poses: usize,
     /// The fraction of poses drawn with any orientation, in 0..=1; the others are drawn near the motion from start to goal.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub anywhere: f64,
     /// How far (degrees, 0..=180) the latter may turn away from that motion.
+    #[schemars(range(min = 0.0, max = 180.0))]
     pub spread_deg: f64,
 }
 

@@ -34,16 +34,22 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 pub struct ProjectionSettings {
     /// Random starts that one call tries, 1..=100000.
+    #[schemars(range(min = 1, max = 100_000))]
     pub starts: usize,
     /// Newton steps that bring one start onto the manifold, 1..=1000.
+    #[schemars(range(min = 1, max = 1000))]
     pub steps: usize,
     /// How often the joints of one finger are drawn at one pose before the start is given up, 1..=10000.
+    #[schemars(range(min = 1, max = 10_000))]
     pub draws: usize,
     /// How far (of the range of each joint, 0..=1) starts near a configuration may lie from its joints.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub near: f64,
     /// The fraction of starts with any orientation, in 0..=1; the others start near the motion from start to goal.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub anywhere: f64,
     /// How far (degrees, 0..=180) the latter may turn away from that motion.
+    #[schemars(range(min = 0.0, max = 180.0))]
     pub spread_deg: f64,
 }
 

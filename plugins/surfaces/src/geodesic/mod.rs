@@ -58,13 +58,16 @@ fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GeodesicSettings {
-    /// An edge is sharp where its facets' normals differ by more than this angle, in 1..=180 degrees. Default 30, a neutral choice.
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees), in 1..=180. Default 30, a neutral choice.
+    #[schemars(range(min = 1.0, max = 180.0))]
     pub sharp_angle_deg: f64,
     /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked, in
     /// 1e-5..=1e-2; at most a fifth of its radius r. A spike between two places sinks in by step²/(8 r) at most. Default
     /// 0.001, the step of a transfer: 13 µm for a radius of 10 mm, less than a plan's tolerance of closure.
+    #[schemars(range(min = 1e-5, max = 1e-2))]
     pub step: f64,
     /// By how much a path may be longer than the shortest one, relative, in 1e-9..=1e-3. Default 2e-4, a neutral choice.
+    #[schemars(range(min = 1e-9, max = 1e-3))]
     pub tolerance: f64,
 }
 

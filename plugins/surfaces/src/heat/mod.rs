@@ -86,7 +86,7 @@ pub struct HeatSettings {
     /// Time of the heat flow over the mean edge's length squared, in 0.1..=1000. Default 1, the paper's value.
     #[schemars(range(min = 0.1, max = 1000.0))]
     pub smoothing: f64,
-    /// An edge is sharp where its facets' normals differ by more than this angle, in 1..=180 degrees. Default 30, a neutral choice.
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees), in 1..=180. Default 30, a neutral choice.
     #[schemars(range(min = 1.0, max = 180.0))]
     pub sharp_angle_deg: f64,
     /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked, in

@@ -80,7 +80,7 @@ pub struct ParametricSettings {
     /// the object (the largest distance of a vertex from its origin), in 0.005..=0.5. Default 0.06, a neutral choice.
     #[schemars(range(min = 0.005, max = 0.5))]
     pub spacing: f64,
-    /// An edge is sharp where its facets' normals differ by more than this angle, in 1..=180 degrees. Default 30, as for `surface/geodesic`.
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees), in 1..=180. Default 30, as for `surface/geodesic`.
     #[schemars(range(min = 1.0, max = 180.0))]
     pub sharp_angle_deg: f64,
     /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked, in

@@ -66,15 +66,19 @@ const MOST_POINTS: f64 = 2e6;
 #[serde(deny_unknown_fields, default)]
 pub struct SteinerSettings {
     /// The fewest points on an edge, in 1..=64. Default 2, a neutral choice.
+    #[schemars(range(min = 1, max = 64))]
     pub fewest: u32,
     /// Largest distance (m) between neighbouring points of an edge, in 1e-5..=1. Default 0.002, a neutral choice.
+    #[schemars(range(min = 1e-5, max = 1.0))]
     pub spacing: f64,
     /// Whether paths are pulled tight in their strip of facets. Default true; false is the cited algorithm.
     pub straighten: bool,
-    /// An edge is sharp where its facets' normals differ by more than this angle, in 1..=180 degrees. Default 30, a neutral choice.
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees), in 1..=180. Default 30, a neutral choice.
+    #[schemars(range(min = 1.0, max = 180.0))]
     pub sharp_angle_deg: f64,
     /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked, in
     /// 1e-5..=1e-2; at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
+    #[schemars(range(min = 1e-5, max = 1e-2))]
     pub step: f64,
 }
 

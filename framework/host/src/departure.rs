@@ -1,0 +1,113 @@
+//! Where and how data depart from a schema.
+
+use crate::did_you_mean;
+use std::fmt;
+use thiserror::Error;
+
+/// One step into nested data.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// To the value of a key.
+    Key(String),
+    /// To an item, counted from 0.
+    Item(usize),
+}
+
+/// A place in nested data, written `goal[1].pose.position`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct KeyPath(pub Vec<Step>);
+
+impl KeyPath {
+    /// The path one key deeper.
+    #[must_use]
+    pub fn key(&self, key: &str) -> Self {
+        self.with(Step::Key(key.to_owned()))
+    }
+
+    /// The path one item deeper.
+    #[must_use]
+    pub fn item(&self, item: usize) -> Self {
+        self.with(Step::Item(item))
+    }
+
+    fn with(&self, step: Step) -> Self {
+        Self(self.0.iter().cloned().chain([step]).collect())
+    }
+}
+
+impl fmt::Display for KeyPath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, step) in self.0.iter().enumerate() {
+            match step {
+                Step::Key(key) if i > 0 => write!(f, ".{key}")?,
+                Step::Key(key) => write!(f, "{key}")?,
+                Step::Item(item) => write!(f, "[{item}]")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How data departs from a schema.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fault {
+    /// A key that the schema does not know; its path ends with it.
+    #[error("unknown key; {}", suggestion(.near, .known))]
+    UnknownKey {
+        /// Known keys that resemble it.
+        near: Vec<String>,
+        /// Every known key.
+        known: Vec<String>,
+    },
+    /// A key is missing.
+    #[error("the key `{key}` is missing")]
+    Missing {
+        /// The key.
+        key: String,
+    },
+    /// A value of the wrong type.
+    #[error("{found} is not {expected}")]
+    Type {
+        /// The type that the schema asks for.
+        expected: String,
+        /// The value that was found.
+        found: String,
+    },
+    /// A text that is none of the allowed ones.
+    #[error("{found} is not one of the allowed values; {}", suggestion(.near, .known))]
+    Choice {
+        /// The value that was found.
+        found: String,
+        /// Allowed values that resemble it.
+        near: Vec<String>,
+        /// Every allowed value.
+        known: Vec<String>,
+    },
+    /// A number below the schema's minimum or above its maximum.
+    #[error("{found} is outside {range}")]
+    Range {
+        /// The number that was found.
+        found: String,
+        /// The allowed range.
+        range: String,
+    },
+}
+
+fn suggestion(near: &[String], known: &[String]) -> String {
+    match (near, known) {
+        ([], []) => "there are none here".to_owned(),
+        ([], known) => format!("known are `{}`", known.join("`, `")),
+        (near, _) => did_you_mean(near),
+    }
+}
+
+/// The first place where data depart from a schema.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("`{path}`{} {fault}", if matches!(fault, Fault::Range { .. }) { " =" } else { ":" })]
+pub struct Departure {
+    /// Where.
+    pub path: KeyPath,
+    /// How.
+    pub fault: Fault,
+}
