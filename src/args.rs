@@ -29,6 +29,7 @@ pub enum Command {
     Scenarios(ScenariosArgs),
     Schema(SchemaArgs),
     NewPlugin(NewPluginArgs),
+    Reference(crate::reference::ReferenceArgs),
 }
 
 /// Plan a scenario, verify the plan, and write it to a file.

@@ -13,6 +13,8 @@ mod overrides;
 mod plan;
 mod plugins;
 mod progress;
+mod property;
+mod reference;
 mod replay;
 mod report;
 mod scenarios;
@@ -45,6 +47,7 @@ fn main() -> ExitCode {
         Command::Scenarios(args) => scenarios::run(args),
         Command::Schema(args) => schema::run(args),
         Command::NewPlugin(args) => new_plugin::run(args),
+        Command::Reference(args) => reference::run(args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,12 +1,13 @@
 //! `regrasp plugins`
 
 use crate::args::{LibraryArgs, PluginsArgs};
+use crate::property::Property;
 use crate::table::Table;
 use crate::{Failure, say, say_json};
 use regrasp::api::{Entry, Role, Slot};
 use regrasp::host::{Choices, Registry, did_you_mean, near, settings_schema};
 use regrasp::study::scenario::SCENARIOS;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 /// The plugins that are linked into the program, and those of the libraries that are to be loaded.
 pub fn registry(libraries: &LibraryArgs) -> Result<Registry, Failure> {
@@ -82,46 +83,61 @@ fn details(registry: &Registry, entry: &Entry) -> Result<String, Failure> {
         text += &format!("  reference: {reference}\n");
     }
     let schema = settings_schema(entry).map_err(Failure::bad_input)?;
-    let none = Map::new();
-    let properties = schema.get("properties").and_then(Value::as_object).unwrap_or(&none);
-    Ok(text + &settings(properties) + &example(entry, properties))
+    Ok(text + &settings(&schema) + &example(entry, &schema))
+}
+
+/// The settings that a schema knows, in the order of their names.
+pub fn properties(schema: &Value) -> impl Iterator<Item = (&String, Property<'_>)> {
+    let all = schema.get("properties").and_then(Value::as_object);
+    all.into_iter().flatten().map(|(key, value)| (key, Property::new(value, schema)))
 }
 
 /// The table of settings.
-fn settings(properties: &Map<String, Value>) -> String {
-    if properties.is_empty() {
+fn settings(schema: &Value) -> String {
+    if properties(schema).next().is_none() {
         return "  no settings\n".into();
     }
-    let mut table = Table::new("<", &["setting", "default", "range", "meaning"]);
-    for (key, property) in properties {
-        let default = property.get("default").map(Value::to_string).unwrap_or_default();
-        let meaning = property.get("description").and_then(Value::as_str).unwrap_or_default();
-        let meaning = meaning.split_whitespace().collect::<Vec<_>>().join(" ");
-        table.row([key.clone(), default, range(property), meaning]);
+    let mut table = Table::new("<", &["setting", "type", "default", "range", "meaning"]);
+    for (key, property) in properties(schema) {
+        let kind = property.kind().replace('`', "");
+        table.row([key.clone(), kind, property.default(), property.range_and_unit(), property.meaning()]);
     }
     table.text()
 }
 
-/// The range of a setting as its schema states it; the empty text where it does not state both ends.
-fn range(property: &Value) -> String {
-    let end = |key: &str| property.get(key).map(Value::to_string).unwrap_or_default();
-    match (end("minimum"), end("maximum")) {
-        (low, high) if low.is_empty() || high.is_empty() => String::new(),
-        (low, high) => format!("{low}..={high}"),
-    }
+/// How a scenario and the command line choose the plugin.
+fn example(entry: &Entry, schema: &Value) -> String {
+    let indented: String = in_scenario(entry, schema).lines().map(|line| format!("    {line}\n")).collect();
+    format!("  in a scenario:\n{indented}  on the command line:\n    {}\n", on_command_line(entry, schema))
 }
 
-/// How a scenario and the command line choose the plugin.
-fn example(entry: &Entry, properties: &Map<String, Value>) -> String {
-    let Some(slot) = entry.slots.first().map(|slot| slot.name()) else { return String::new() };
-    let name = entry.id.split_once('/').map_or(entry.id, |(_, name)| name);
-    let mut text = format!("  in a scenario:\n    [plugins.{slot}]\n    use = \"{name}\"\n");
-    for (key, property) in properties {
-        let default = property.get("default").and_then(|value| toml::Value::try_from(value).ok());
-        text += &default.map(|value| format!("    {key} = {value}\n")).unwrap_or_default();
-    }
+/// The name of a plugin without its role.
+pub fn bare(entry: &Entry) -> &'static str {
+    entry.id.split_once('/').map_or(entry.id, |(_, name)| name)
+}
+
+/// The table of a scenario that chooses the plugin, with all its settings.
+pub fn in_scenario(entry: &Entry, schema: &Value) -> String {
+    let slot = entry.slots.first().map_or("", |slot| slot.name());
+    let values = properties(schema).filter_map(|(key, property)| Some((key, value(property)?)));
+    let lines: String = values.map(|(key, value)| format!("{key} = {value}\n")).collect();
+    format!("[plugins.{slot}]\nuse = \"{}\"\n{lines}", bare(entry))
+}
+
+/// A setting's default; where there is none, its example.
+fn value(property: Property<'_>) -> Option<String> {
+    Some(property.default()).filter(|text| !text.is_empty()).or_else(|| property.example())
+}
+
+/// The command that plans with the plugin, and sets its first setting.
+pub fn on_command_line(entry: &Entry, schema: &Value) -> String {
+    let slot = entry.slots.first().map_or("", |slot| slot.name());
     // A built-in scenario made for the plugin, if there is one: not every plugin fits the hand of `sphere`.
     let made_for = SCENARIOS.iter().find(|file| file.text.contains(&format!("use = \"{}\"", entry.id)));
     let scenario = made_for.map_or("sphere", |file| file.name);
-    text + &format!("  on the command line:\n    regrasp plan {scenario} --use {slot}={name}\n")
+    let set = properties(schema).find_map(|(key, property)| {
+        let value = value(property).filter(|value| !value.contains([' ', '"', '{']))?;
+        Some(format!(" --set {slot}.{key}={value}"))
+    });
+    format!("regrasp plan {scenario} --use {slot}={}{}", bare(entry), set.unwrap_or_default())
 }
