@@ -23,6 +23,9 @@ const ARROWS: &[(&str, &[&str])] = &[
 /// Packages that may use everything but the command line.
 const FREE: &[&str] = &["regrasp-study", "regrasp"];
 
+/// The plugins that the book builds: crates as a reader writes them, with the rules of all plugins.
+const TUTORIALS: &str = "book/tutorials";
+
 /// Heavy or opinionated packages, and the only ones of ours that may use them directly.
 const PRIVATE: &[(&str, &[&str])] = &[
     ("parry3d-f64", &["regrasp-world", "regrasp-verify"]),
@@ -84,7 +87,8 @@ fn package(value: &Value) -> Package {
     let normal = dependencies.iter().filter(|dependency| dependency["kind"].is_null());
     Package {
         name: text(&value["name"]),
-        is_plugin: manifest.starts_with(root().join("plugins")),
+        is_plugin: manifest.starts_with(root().join("plugins"))
+            || manifest.starts_with(root().join(TUTORIALS)),
         uses: normal.map(|dependency| text(&dependency["name"])).collect(),
     }
 }
@@ -140,7 +144,7 @@ fn heavy_dependencies_stay_where_they_are_needed() {
 /// Every Rust file of the project, relative to its root.
 fn rust_files() -> Vec<PathBuf> {
     let mut files = Vec::new();
-    let rooms = ["benches", "examples", "framework", "plugins", "src", "tests"];
+    let rooms = ["benches", TUTORIALS, "examples", "framework", "plugins", "src", "tests"];
     rooms
         .iter()
         .map(|room| root().join(room))
@@ -190,7 +194,9 @@ fn the_list_of_longer_files_is_not_out_of_date() {
 /// The part of a library's file that is not its tests.
 fn library_code(file: &Path) -> Option<String> {
     let parts: Vec<&str> = file.iter().filter_map(|part| part.to_str()).collect();
-    let is_library = matches!(parts.first(), Some(&"framework" | &"plugins")) && parts.get(2) == Some(&"src");
+    let room = if file.starts_with(TUTORIALS) { 3 } else { 2 };
+    let is_library =
+        matches!(parts.first(), Some(&"framework" | &"plugins" | &"book")) && parts.get(room) == Some(&"src");
     let is_test = parts.iter().any(|part| ["tests", "tests.rs", "test_plugins.rs"].contains(part));
     let text = (is_library && !is_test).then(|| read(file))?;
     let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();

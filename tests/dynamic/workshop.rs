@@ -65,15 +65,24 @@ fn build(name: &str, package: &str) -> PathBuf {
 
 /// The library of the plugin that `new-plugin` writes for a role, unedited.
 pub fn written(role: &str) -> PathBuf {
+    edited(role, "mine", &[])
+}
+
+/// The library of what `new-plugin` writes, some of its files replaced by others.
+pub fn edited(role: &str, name: &str, files: &[(&str, PathBuf)]) -> PathBuf {
     let _building = lock();
     let fresh =
         tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("the target folder can be written to");
     let folder = fresh.path().join("crate");
-    let folder = folder.to_str().expect("the target folder is UTF-8");
-    let said = regrasp(&["new-plugin", role, "mine", "-o", folder]);
+    let said =
+        regrasp(&["new-plugin", role, name, "-o", folder.to_str().expect("the target folder is UTF-8")]);
     assert_eq!(said.code, Some(0), "{said:?}");
-    mirror(Path::new(folder), &root().join(role));
-    build(role, &format!("mine-{role}-dynamic"))
+    for (file, by) in files {
+        fs::copy(by, folder.join(file)).expect("both files exist");
+    }
+    let here = if name == "mine" { role.to_owned() } else { format!("{name}-{role}") };
+    mirror(&folder, &root().join(&here));
+    build(&here, &format!("{name}-{role}-dynamic"))
 }
 
 /// The library whose plugins panic.

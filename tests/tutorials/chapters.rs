@@ -1,0 +1,72 @@
+//! The chapters: their code comes from files that compile, and every piece that they name exists.
+
+use crate::TUTORIALS;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("book/src/tutorials")
+}
+
+/// The chapters: file and text.
+fn chapters() -> Vec<(PathBuf, String)> {
+    let entries = fs::read_dir(folder()).expect("the book has tutorials");
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    files.sort();
+    files.into_iter().map(|file| (file.clone(), fs::read_to_string(&file).expect("UTF-8"))).collect()
+}
+
+/// The pieces that a chapter includes, as `path:anchor`.
+fn included(text: &str) -> impl Iterator<Item = &str> {
+    text.split("{{#include ").skip(1).filter_map(|rest| rest.split("}}").next())
+}
+
+/// Lines of a piece; none where there is no such piece.
+fn lines(piece: &str) -> usize {
+    let (file, anchor) = piece.split_once(':').unwrap_or((piece, ""));
+    let Ok(text) = fs::read_to_string(folder().join(file)) else { return 0 };
+    if anchor.is_empty() {
+        return text.lines().count();
+    }
+    let is_mark =
+        |line: &str, mark: &str| line.trim().strip_prefix("// ") == Some(&format!("{mark}: {anchor}"));
+    let mut inside = text.lines().skip_while(|line| !is_mark(line, "ANCHOR")).skip(1);
+    let count = inside.by_ref().take_while(|line| !is_mark(line, "ANCHOR_END")).count();
+    // Without its end a piece would run to the end of the file.
+    if text.lines().any(|line| is_mark(line, "ANCHOR_END")) { count } else { 0 }
+}
+
+#[test]
+fn every_piece_of_code_that_a_chapter_includes_exists() {
+    let all = chapters();
+    let pieces: Vec<(&Path, &str)> =
+        all.iter().flat_map(|(file, text)| included(text).map(|piece| (file.as_path(), piece))).collect();
+    assert!(pieces.len() >= 4 * TUTORIALS.len(), "only {} pieces were found", pieces.len());
+    let missing: Vec<_> = pieces.iter().filter(|(_, piece)| lines(piece) == 0).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
+
+#[test]
+fn no_rust_is_typed_into_a_chapter() {
+    for (file, text) in chapters() {
+        for block in text.split("```rust").skip(1) {
+            let code =
+                block.split_once('\n').and_then(|(_, rest)| rest.split("```").next()).unwrap_or_default();
+            let typed = code.lines().find(|line| !line.is_empty() && !line.starts_with("{{#include "));
+            assert_eq!(typed, None, "{}", file.display());
+        }
+    }
+}
+
+#[test]
+fn every_tutorial_shows_all_of_its_plugin() {
+    let all: String = chapters().into_iter().map(|(_, text)| text).collect();
+    for (role, name, _) in TUTORIALS {
+        let file = format!("../../tutorials/{name}-{role}/src/lib.rs");
+        let text = fs::read_to_string(folder().join(&file)).expect("the tutorial has a crate");
+        let anchors = text.lines().filter_map(|line| line.trim().strip_prefix("// ANCHOR: "));
+        let hidden: Vec<&str> =
+            anchors.filter(|anchor| !all.contains(&format!("{{{{#include {file}:{anchor}}}}}"))).collect();
+        assert!(hidden.is_empty(), "{file}: no chapter shows {hidden:?}");
+    }
+}

@@ -1,0 +1,25 @@
+//! What a reader does: `regrasp new-plugin`, the chapter's code in the place of the template's, build, load, plan.
+
+use crate::TUTORIALS;
+use crate::workshop::{edited, regrasp};
+use std::path::{Path, PathBuf};
+
+/// The chapter's crate, in the form in which a reader has it.
+fn followed(role: &str, name: &str) -> PathBuf {
+    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("book/tutorials").join(format!("{name}-{role}"));
+    edited(role, name, &["src/lib.rs", "tests/conformance.rs"].map(|file| (file, book.join(file))))
+}
+
+#[test]
+fn every_tutorial_builds_out_of_the_tree_loads_and_plans() {
+    for (role, name, slot) in TUTORIALS {
+        let library = followed(role, name);
+        let library = library.to_str().expect("the target folder is UTF-8");
+        let choice = format!("{slot}={name}");
+        let planned = regrasp(&["plan", "sphere", "--load", library, "--use", &choice, "--json"]);
+        assert_eq!(planned.code, Some(0), "{role}: {}", planned.err);
+        let planned: serde_json::Value = serde_json::from_str(&planned.out).expect("JSON");
+        assert_eq!((&planned["status"], &planned["verified"]), (&"solved".into(), &true.into()));
+        assert!(planned["plugins"].to_string().contains(&format!("{role}/{name}")), "{}", planned["plugins"]);
+    }
+}

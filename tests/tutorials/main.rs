@@ -1,0 +1,11 @@
+//! The plugins that the book's tutorials build: each plans, and whoever follows a chapter gets what it promises.
+
+mod chapters;
+mod follow;
+mod plans;
+#[path = "../dynamic/workshop.rs"]
+#[allow(dead_code)]
+mod workshop;
+
+/// The tutorials: role, name of the plugin, slot.
+const TUTORIALS: [(&str, &str, &str); 1] = [("contact-model", "greasy", "contact-model")];
