@@ -4,7 +4,6 @@ use super::view::{Point, area, hull, see};
 use super::{Picture, Scene};
 use regrasp_api::{Configuration, Mesh, Pose, Shape, Vec3};
 use regrasp_world::{ChainHand, LinkFrame};
-use std::fmt::Write;
 
 /// How many degrees of brightness a surface has.
 const SHADES: usize = 4;
@@ -130,11 +129,12 @@ fn class(mesh: &Mesh, facet: u32, X_HO: &Pose) -> String {
     format!("rg-{}{shade}", if painted { "paint" } else { "object" })
 }
 
-/// A triangle as part of a path, to a tenth of a millimetre.
+/// A triangle as part of a path, to a tenth of a millimetre: the first corner, and the way on from there, which takes fewer characters.
 fn triangle(points: &[Point; 3]) -> String {
-    let [a, b, c] = points;
-    let mut path = String::new();
-    write!(path, "M{:.1} {:.1}L{:.1} {:.1} {:.1} {:.1}Z", a.x, a.y, b.x, b.y, c.x, c.y)
-        .expect("a text takes everything");
-    path
+    let tenths = |point: &Point| [point.x, point.y].map(|x| (10.0 * x).round() as i64);
+    let [a, b, c] = points.each_ref().map(tenths);
+    let length = |tenths: i64| tenths as f64 / 10.0;
+    let step = |from: [i64; 2], to: [i64; 2]| [to[0] - from[0], to[1] - from[1]].map(length);
+    let ([bx, by], [cx, cy]) = (step(a, b), step(b, c));
+    format!("M{} {}l{bx} {by} {cx} {cy}z", length(a[0]), length(a[1]))
 }

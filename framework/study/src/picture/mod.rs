@@ -3,9 +3,12 @@
 //! A finger that holds the object has a dark tip, a lifted one a red tip. The cross painted on the object shows how it turns. Colours are classes,
 //! so that a page can have its own: [`STYLE`] is what they are by default.
 
+mod annotate;
 mod body;
+mod sheet;
 mod view;
 
+pub use sheet::sheet;
 pub use view::Bounds;
 
 use regrasp_api::{Configuration, Mesh, ObstacleDescription};

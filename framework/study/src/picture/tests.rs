@@ -1,6 +1,6 @@
 use super::*;
 use crate::scenario::{Scenario, load};
-use regrasp_api::{Hand, PerFinger, Pose};
+use regrasp_api::{Hand, PerFinger, Pose, Vec3};
 use regrasp_host::Registry;
 
 fn scenario(name: &str) -> Scenario {
@@ -25,8 +25,43 @@ fn everything_is_drawn_within_the_bounds() {
     assert_eq!(text.matches("rg-free").count(), fingers);
     assert_eq!(text.matches("rg-link").count(), 3 * fingers);
     assert!(text.contains("rg-object") && text.contains("rg-paint") && text.contains("rg-obstacle"));
-    let numbers = text.split(['"', ' ', ',', 'M', 'L', 'Z']).filter_map(|word| word.parse::<f64>().ok());
+    let numbers = text.split(['"', ' ', ',', 'M', 'l', 'z']).filter_map(|word| word.parse::<f64>().ok());
     let bounds = picture.bounds();
     let largest = bounds.low.iter().chain(&bounds.high).fold(0.0_f64, |most, end| most.max(end.abs()));
     assert!(numbers.into_iter().all(|number| number.abs() <= largest + 0.1));
+}
+
+/// A picture with nothing in it yet.
+fn empty() -> Picture {
+    Picture { bounds: Bounds::NOTHING, strokes: Vec::new() }
+}
+
+#[test]
+fn a_trace_is_dotted_where_the_object_hides_it() {
+    let mut picture = empty();
+    let towards = Vec3::new(0.0, -1.0, 0.0);
+    let points =
+        [0.0, 0.1, 0.2, 0.3].map(|x| (Vec3::new(x, 0.0, 0.0), if x < 0.15 { towards } else { -towards }));
+    picture.trace("rg-trace", &points);
+    let text = picture.elements();
+    assert_eq!(text.matches("<polyline").count(), 2);
+    assert_eq!(text.matches("rg-trace rg-behind").count(), 1);
+    // The parts share the point where they meet.
+    assert_eq!(text.matches("200.0,").count(), 2);
+    assert_eq!(picture.bounds().size(), [300.0, 0.0]);
+}
+
+#[test]
+fn a_sheet_has_every_picture_with_its_caption() {
+    let scenario = scenario("sphere");
+    let frames: Vec<_> = ["a < b", "c", "d"].map(|caption| (picture(&scenario), caption.to_owned())).into();
+    let text = sheet(&frames, 2);
+    assert!(text.contains(">a &lt; b</text>") && text.contains(">d</text>"));
+    assert_eq!(
+        text.matches("rg-link\"").count(),
+        3 * picture(&scenario).elements().matches("rg-link\"").count()
+    );
+    let size = picture(&scenario).bounds().size();
+    let wanted = format!("viewBox=\"0 0 {:.0} {:.0}\"", 2.0 * (size[0] + 20.0), 2.0 * (size[1] + 26.0));
+    assert!(text.contains(&wanted), "{wanted}");
 }

@@ -21,6 +21,11 @@ pub fn see(p_HP: &Vec3) -> Point {
     Point { x: 1e3 * p_HP.x, y: -1e3 * up, depth: 1e3 * near }
 }
 
+/// Whether a surface with this outward normal (hand's frame) is seen from its outer side.
+pub fn faces_the_eye(n_H: &Vec3) -> bool {
+    see(n_H).depth > 0.0
+}
+
 /// The part of the paper that something covers (mm).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
