@@ -186,7 +186,7 @@ impl FingerJoints {
         Self { count: count as u8, values: [0.0; MAX_FINGER_JOINTS] }
     }
 
-    /// A copy of `values`, at most [`MAX_FINGER_JOINTS`].
+    /// A copy of `values` (rad; m where prismatic), at most [`MAX_FINGER_JOINTS`].
     pub fn from_slice(values: &[f64]) -> Self {
         let mut joints = Self::zeros(values.len());
         joints.copy_from_slice(values);

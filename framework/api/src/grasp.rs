@@ -64,7 +64,7 @@ pub struct Grasp<'a> {
 }
 
 impl<'a> Grasp<'a> {
-    /// A grasp without contacts.
+    /// A grasp without contacts under the gravity `g_O` (m/s², in the object's frame).
     pub fn new(g_O: Vec3) -> Self {
         let nothing = GraspContact {
             finger: FingerIndex(0),
@@ -105,6 +105,6 @@ impl<'a> Grasp<'a> {
 pub struct Hint {
     /// What the numbers are, as the plugin likes; 0 means "nothing known".
     pub tag: u64,
-    /// The plugin's numbers.
+    /// The plugin's numbers, in the plugin's units.
     pub values: [f64; 8],
 }

@@ -101,7 +101,7 @@ pub struct MassProperties {
 }
 
 impl Mesh {
-    /// Builds the topology and refuses what is not a closed, outward, manifold mesh.
+    /// Builds the topology of `vertices` (m, in the object's frame) and refuses what is not a closed, outward, manifold mesh.
     pub fn new(vertices: Vec<Vec3>, facets: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         check_indices(&vertices, &facets)?;
         let normals = normals(&vertices, &facets)?;

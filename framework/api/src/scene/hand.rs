@@ -29,6 +29,7 @@ pub struct HandDescription {
     /// finger; the palm and a first link that touch in the resting posture). A body is named by `palm`, by the joint before the link, or,
     /// for a fingertip's ball, by its finger.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("examples" = [[["palm", "thumb-base"]]]))]
     pub touching: Vec<[String; 2]>,
 }
 
@@ -116,7 +117,7 @@ pub struct JointDescription {
     /// Pose of the joint's frame, at position 0, in the frame of the link before (the base for the first).
     #[serde(default)]
     pub origin: PoseDescription,
-    /// The axis in the joint's frame; its length does not matter.
+    /// The axis in the joint's frame (a direction, of any length).
     pub axis: [f64; 3],
     /// Lowest position (rad; m where prismatic).
     pub lower: f64,
@@ -149,14 +150,17 @@ pub struct JointDescription {
 #[serde(deny_unknown_fields)]
 pub struct Mimic {
     /// The driving joint: one of the same finger that moves by itself.
+    #[schemars(example = &"index-middle")]
     pub joint: String,
-    /// By what its position is multiplied.
+    /// By what its position is multiplied (no unit between joints of one kind).
     #[serde(default = "default_multiplier")]
     #[schemars(range(min = -100.0, max = 100.0))]
+    #[schemars(example = 0.8)]
     pub multiplier: f64,
     /// What is added (rad; m where prismatic).
     #[serde(default)]
     #[schemars(range(min = -10.0, max = 10.0))]
+    #[schemars(example = 0.1)]
     pub offset: f64,
 }
 

@@ -47,13 +47,13 @@ pub struct Resolution {
     /// Largest step of the object or a contact on a path in GS_n (m).
     #[schemars(range(min = 1e-5, max = 0.1))]
     pub grasp_step: f64,
-    /// Largest turn of the object in one step on a path in GS_n (rad).
+    /// Largest turn of the object in one step on a path in GS_n (rad); by default 2 degrees.
     #[schemars(range(min = 1e-4, max = 1.0))]
     pub grasp_turn: f64,
     /// Largest step of the object or a contact in a transfer (m).
     #[schemars(range(min = 1e-5, max = 0.1))]
     pub transfer_step: f64,
-    /// Largest turn of the object in one step of a transfer (rad).
+    /// Largest turn of the object in one step of a transfer (rad); by default 1.5 degrees.
     #[schemars(range(min = 1e-4, max = 1.0))]
     pub transfer_turn: f64,
     /// Largest step of a fingertip in a regrasp (m).
@@ -71,7 +71,7 @@ pub struct Resolution {
     /// Distance that contacts keep from a sharp edge when they are chosen (m).
     #[schemars(range(min = 0.0, max = 0.1))]
     pub edge_margin: f64,
-    /// What the friction coefficient is multiplied with while planning, in (0, 1], so that transfers keep a margin.
+    /// What the friction coefficient is multiplied with while planning (no unit), so that transfers keep a margin.
     #[schemars(range(min = 0.01, max = 1.0))]
     pub friction_margin: f64,
 }
@@ -102,9 +102,10 @@ pub struct Budget {
     /// there is no way.
     #[schemars(range(min = 1, max = 10_000_000))]
     pub max_nodes: usize,
-    /// Most seconds for the whole run; none where absent.
+    /// Most time for the whole run (s); no limit where absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.001, max = 1e7))]
+    #[schemars(example = 60.0)]
     pub time_limit: Option<f64>,
     /// Tries of the smoother, per segment of the raw plan.
     #[schemars(range(min = 0, max = 1_000_000))]

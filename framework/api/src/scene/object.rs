@@ -34,10 +34,12 @@ pub enum Shape {
     },
     /// Everything with `normal · x ≤ offset`.
     HalfSpace {
-        /// Outward normal; its length does not matter.
+        /// Outward normal (a direction, of any length).
+        #[schemars(extend("examples" = [[0.0, 0.0, 1.0]]))]
         normal: [f64; 3],
         /// Distance of the plane from the origin along the normal (m).
         #[schemars(range(min = -1e3, max = 1e3))]
+        #[schemars(example = 0.0)]
         offset: f64,
     },
     /// A closed mesh.
@@ -75,19 +77,24 @@ pub struct ObstacleDescription {
 pub struct MeshSource {
     /// An STL, OBJ or PLY file, relative to the file that names it.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(example = &"part.stl")]
     pub file: Option<String>,
-    /// What lengths are multiplied with: 0.001 for a file in millimetres. Default 1.
+    /// What lengths are multiplied with (no unit): 0.001 for a file in millimetres. Default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-9, max = 1e9))]
+    #[schemars(example = 0.001)]
     pub scale: Option<f64>,
-    /// Turn the mesh inside out after reading. Default false.
+    /// Turns the mesh inside out after reading. Default false.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(example = true)]
     pub flip: Option<bool>,
     /// Vertices (m), instead of a file.
     #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("examples" = [[[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.0, 0.02, 0.0], [0.0, 0.0, 0.02]]]))]
     pub vertices: Vec<[f64; 3]>,
     /// Facets as counter-clockwise indices of vertices seen from outside, instead of a file.
     #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("examples" = [[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]]))]
     pub facets: Vec<[u32; 3]>,
 }
 
@@ -141,9 +148,11 @@ pub enum ObjectShape {
     Capsule {
         /// Radius (m).
         #[schemars(range(min = 1e-6, max = 1e3))]
+        #[schemars(example = 0.02)]
         radius: f64,
         /// Length of the cylindrical part along z (m).
         #[schemars(range(min = 1e-6, max = 1e3))]
+        #[schemars(example = 0.04)]
         height: f64,
         /// Wished number of facets.
         #[serde(default = "default_facets")]

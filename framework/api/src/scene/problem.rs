@@ -12,10 +12,11 @@ pub struct PoseDescription {
     /// Position (m).
     #[serde(default)]
     pub position: [f64; 3],
-    /// Orientation as a quaternion w, x, y, z; normalised when read.
+    /// Orientation as a quaternion w, x, y, z (no unit); normalised when read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("examples" = [[0.707, 0.0, 0.0, 0.707]]))]
     pub orientation: Option<[f64; 4]>,
-    /// Orientation as a turn about this axis, instead of a quaternion; needs `angle_deg`.
+    /// Orientation as a turn about this axis (a direction, of any length), instead of a quaternion; needs `angle_deg`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axis: Option<[f64; 3]>,
     /// The angle of the turn about `axis` (degrees).
@@ -71,9 +72,11 @@ impl From<&Pose> for PoseDescription {
 pub struct FingerGrasp {
     /// Contact point on the object, in the object's frame (m), within 1 mm of the surface; absent for a free finger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("examples" = [[0.0, 0.03, 0.0]]))]
     pub contact: Option<[f64; 3]>,
-    /// Joint positions (rad); where absent, inverse kinematics for a contact and the rest posture for a free finger.
+    /// Joint positions (rad; m where prismatic); where absent, inverse kinematics for a contact and the rest posture for a free finger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("examples" = [[0.0, -0.9, 0.6]]))]
     pub joints: Option<Vec<f64>>,
 }
 
@@ -105,9 +108,11 @@ pub struct GoalDescription {
 pub struct Workspace {
     /// Lowest coordinates in the hand's frame (m).
     #[schemars(inner(range(min = -1e3, max = 1e3)))]
+    #[schemars(extend("examples" = [[-0.02, -0.02, 0.07]]))]
     pub lower: [f64; 3],
     /// Highest coordinates in the hand's frame (m).
     #[schemars(inner(range(min = -1e3, max = 1e3)))]
+    #[schemars(extend("examples" = [[0.02, 0.02, 0.11]]))]
     pub upper: [f64; 3],
 }
 

@@ -22,17 +22,19 @@ pub struct StudyFile {
     /// Built-in scenarios by name, or scenario files, relative to this file.
     pub scenarios: Vec<String>,
     /// Built-in scenarios by the dozen, before those in `scenarios`.
+    #[schemars(example = &"paper")]
     pub suite: Option<Suite>,
     /// How many seeds; 20 where absent.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub seeds: Option<u64>,
     /// The first seed; 0 where absent.
     pub first_seed: Option<u64>,
-    /// Most seconds for one run.
+    /// Most time for one run (s); no limit where absent.
     #[schemars(range(min = 0.001, max = 1e7))]
     pub time_limit: Option<f64>,
-    /// Most nodes to generate for each goal.
+    /// Most nodes to generate for each goal; where absent, what the scenario says.
     #[schemars(range(min = 1, max = 10_000_000))]
+    #[schemars(example = 500)]
     pub max_nodes: Option<u64>,
     /// Plugins for all variants, where these do not choose others.
     pub plugins: PluginTables,
@@ -81,6 +83,7 @@ impl Suite {
 #[serde(deny_unknown_fields)]
 pub struct FactorTable {
     /// The slot, such as `sampler` or `local-planner.regrasp`.
+    #[schemars(example = &"sampler")]
     pub slot: String,
     /// The levels: plugins, settings, or both.
     pub levels: Vec<PluginTable>,

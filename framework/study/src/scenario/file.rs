@@ -77,34 +77,43 @@ pub struct HandChoice {
     pub builtin: Option<String>,
     /// A hand file, relative to the scenario file.
     #[serde(default)]
+    #[schemars(example = &"my-hand.toml")]
     pub file: Option<String>,
     /// A URDF file, relative to the scenario file; `regrasp hand FILE.urdf` shows how it is understood.
     #[serde(default)]
+    #[schemars(example = &"my-hand.urdf")]
     pub urdf: Option<String>,
     /// The URDF's fingertip links, one a finger, in the order in which the fingers are counted; guessed and printed where absent.
     #[serde(default)]
+    #[schemars(extend("examples" = [["thumb_tip", "index_tip", "middle_tip", "ring_tip"]]))]
     pub tips: Vec<String>,
     /// Radius of the balls that stand for the fingertips (m); where absent, that of the tip links' own balls.
     #[serde(default)]
     #[schemars(range(min = 1e-4, max = 0.2))]
+    #[schemars(example = 0.012)]
     pub fingertip_radius: Option<f64>,
     /// Centres of these balls in the frames of the tip links (m): one for all, or one for each finger; where absent, they are fitted to the tip
     /// links' shapes.
     #[serde(default)]
+    #[schemars(extend("examples" = [[[0.0, 0.0, 0.01]]]))]
     pub tip_offset: Vec<[f64; 3]>,
     /// The URDF's link whose frame is the hand's; where absent, the last one that all fingertips hang on.
     #[serde(default)]
+    #[schemars(example = &"palm_link")]
     pub palm: Option<String>,
     /// Folders that hold the packages of `package://` paths, relative to the scenario file.
     #[serde(default)]
+    #[schemars(extend("examples" = [["../ros/src"]]))]
     pub packages: Vec<String>,
     /// The most convex pieces (1 to 64) that each mesh is taken apart into; 1, its convex hull, where absent.
     #[serde(default)]
     #[schemars(range(min = 1, max = 64))]
+    #[schemars(example = 4)]
     pub mesh_pieces: Option<usize>,
     /// Largest acceleration of every joint (rad/s²); where absent, what the URDF says, or else 20.
     #[serde(default)]
     #[schemars(range(min = 1e-3, max = 1e9))]
+    #[schemars(example = 20.0)]
     pub acceleration: Option<f64>,
 }
 
