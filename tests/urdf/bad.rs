@@ -186,7 +186,7 @@ fn a_scenario_names_the_urdf_and_its_line() {
     let message = fails(&desk, "plan a.toml");
     says(&message, &["`f0_flexion0`", "bad.urdf:"]);
     desk.write("a.toml", scenario("urdf = \"bad.urdf\"\nfingertip_radius = 3.0"));
-    says(&refused(&desk), &["a.toml:3", "`fingertip_radius` = 3"]);
+    says(&refused(&desk), &["a.toml:3", "fingertip_radius", "3 is outside 0.0001..=0.2 m"]);
     desk.write("a.toml", scenario("builtin = \"four-finger\"\ntips = [\"a\"]"));
     says(&refused(&desk), &["`tips`", "`urdf`"]);
     desk.write("a.toml", scenario("builtin = \"four-finger\"\nurdf = \"bad.urdf\""));

@@ -154,3 +154,67 @@ fn joints_of_no_finger_are_held_and_said() {
         assert!(said.out.contains(part), "`{part}` is not in:\n{}", said.out);
     }
 }
+
+/// The generated hand with plain boxes to the middle of every fingertip, which is a ball of 8 mm; `seen` are the visual shapes of a last link
+/// and of a tip.
+fn boxed(seen: (&str, &str)) -> Desk {
+    let desk = desk(Pattern { fingers: 4, joints: 3, link: "box", driven: false });
+    let mut text = desk.read("urdf/hand.urdf");
+    for finger in 0..4 {
+        let last = format!("<link name=\"f{finger}_link1\">");
+        text = text.replacen(&last, &format!("{last}<visual>{}</visual>", seen.0), 1);
+        let ball = "<collision><geometry><sphere radius=\"0.008\"/></geometry></collision>";
+        let tip = format!("<link name=\"f{finger}_tip\"/>");
+        assert!(text.contains(&last) && text.contains(&tip));
+        let filled = format!("<link name=\"f{finger}_tip\">{ball}<visual>{}</visual></link>", seen.1);
+        text = text.replacen(&tip, &filled, 1);
+    }
+    desk.write("urdf/hand.urdf", text);
+    desk
+}
+
+/// A visual box of a last link up to this height (m), and a visual cylinder of a tip from `below` under its ball's centre to its end.
+fn seen(height: f64, below: f64, radius: f64) -> (String, String) {
+    let link = format!(
+        "<origin xyz=\"0 0 {}\"/><geometry><box size=\"0.014 0.014 {height}\"/></geometry>",
+        height / 2.0
+    );
+    let tip = format!(
+        "<origin xyz=\"0 0 {}\"/><geometry><cylinder radius=\"{radius}\" length=\"{}\"/></geometry>",
+        (0.007 - below) / 2.0,
+        below + 0.007
+    );
+    (link, tip)
+}
+
+#[test]
+fn the_box_of_a_last_link_ends_where_the_link_is_seen_to_end() {
+    let (link, tip) = seen(0.040, 0.010, 0.0075);
+    let said = boxed((&link, &tip)).run("hand urdf/hand.urdf --json");
+    assert_eq!(said.code, 0, "{}", said.err);
+    let report = said.json();
+    let notes = report["report"]["notes"].to_string();
+    assert!(
+        notes.contains("`f0_tip` is cut 10.0 mm behind the ball's centre") && notes.contains("7.5 mm radius"),
+        "{notes}"
+    );
+    let shapes = report["hand"]["finger"][0]["joint"][2]["link"].as_array().unwrap().clone();
+    assert_eq!(shapes.len(), 2, "{shapes:?}");
+    let height = shapes[0]["shape"]["size"][2].as_f64().unwrap();
+    assert!((height - 0.040).abs() < 1e-9, "{height}");
+    assert_eq!(shapes[1]["shape"]["kind"], "mesh");
+}
+
+#[test]
+fn what_is_seen_of_a_tip_must_fit_its_ball_and_its_link() {
+    // The tip is wider than its ball; it ends before it meets the link; the link is seen up to the ball.
+    for (height, below, radius) in [(0.040, 0.010, 0.010), (0.040, 0.005, 0.0075), (0.050, 0.010, 0.0075)] {
+        let (link, tip) = seen(height, below, radius);
+        let said = boxed((&link, &tip)).run("hand urdf/hand.urdf --json");
+        assert_eq!(said.code, 0, "{}", said.err);
+        let report = said.json();
+        let notes = report["report"]["notes"].to_string();
+        assert!(!notes.contains("is cut") && notes.contains("is wide beside the ball"), "{notes}");
+        assert_eq!(report["hand"]["finger"][0]["joint"][2]["link"].as_array().unwrap().len(), 1);
+    }
+}

@@ -7,7 +7,7 @@
 //! | Which links are fingertips and palm, which joints lie between? | `fingers.rs` |
 //! | What limits, frames and drivers have the joints? | `joints.rs` |
 //! | Which convex shapes have the links, where are their meshes? | `solids.rs`, `hull.rs`, `packages.rs` |
-//! | Where is the ball that stands for a fingertip? | `tip.rs` |
+//! | Where is the ball that stands for a fingertip, and what of the last link remains beside it? | `tip.rs`, `trim.rs` |
 //! | Which bodies always touch, and where do the fingers rest? | `contacts.rs` |
 //!
 //! No ROS tool is called and no environment is read: packages are looked for in given folders and above the file. What the file leaves open
@@ -23,6 +23,7 @@ mod packages;
 mod solids;
 mod tip;
 mod tree;
+mod trim;
 
 pub use error::UrdfError;
 
@@ -31,12 +32,15 @@ use document::{Joint, Kind, Model};
 use error::Fault;
 use fingers::{Chain, Fingers};
 use packages::Packages;
-use regrasp_api::{FingerDescription, Fingertip, HandDescription, JointDescription, Pose, Rotation};
+use regrasp_api::{
+    FingerDescription, Fingertip, HandDescription, JointDescription, PlacedShape, Pose, Rotation,
+};
 use serde::Serialize;
 use solids::{Piece, Shaper};
 use std::path::{Path, PathBuf};
 use tip::Tip;
 use tree::Tree;
+use trim::Seen;
 
 /// The largest URDF that is read (bytes).
 const MAX_BYTES: u64 = 64 << 20;
@@ -186,6 +190,19 @@ enum Owner {
     Finger(usize, usize),
 }
 
+/// A link of the hand, its pose in the frame B of what it belongs to, and its shapes in B.
+struct Part {
+    owner: Owner,
+    link: usize,
+    X_BL: Pose,
+    pieces: Vec<Piece>,
+}
+
+/// The shapes of parts.
+fn placed<'p>(parts: impl Iterator<Item = &'p Part>) -> Vec<PlacedShape> {
+    parts.flat_map(|part| part.pieces.iter().map(Piece::placed)).collect()
+}
+
 struct Reader<'a> {
     tree: &'a Tree<'a>,
     fingers: &'a Fingers,
@@ -211,8 +228,7 @@ impl Reader<'_> {
             return Err(Fault::of_file(message));
         }
         let owned = self.owned()?;
-        let of = |owner: Owner| owned.iter().filter(move |(own, ..)| *own == owner);
-        let palm = of(Owner::Palm).flat_map(|(.., pieces)| pieces.iter().map(Piece::placed)).collect();
+        let palm = placed(owned.iter().filter(|part| part.owner == Owner::Palm));
         let finger = fingers.chains.iter().enumerate();
         let finger = finger.map(|(f, chain)| self.finger(f, chain, &owned)).collect::<Result<_, _>>()?;
         Ok(HandDescription {
@@ -227,14 +243,15 @@ impl Reader<'_> {
     }
 
     /// The pieces of every link that is part of the hand, each in the frame of what it belongs to.
-    fn owned(&mut self) -> Result<Vec<(Owner, usize, Vec<Piece>)>, Fault> {
+    fn owned(&mut self) -> Result<Vec<Part>, Fault> {
         let tree = self.tree;
         let mut owned = Vec::new();
         let mut open = vec![(self.fingers.palm, Owner::Palm, Pose::identity())];
         self.upward(&mut open);
         while let Some((link, owner, X_BL)) = open.pop() {
             let pieces = self.shaper.pieces(tree.link_of(link))?;
-            owned.push((owner, link, pieces.into_iter().map(|piece| piece.moved(&X_BL)).collect()));
+            let pieces = pieces.into_iter().map(|piece| piece.moved(&X_BL)).collect();
+            owned.push(Part { owner, link, X_BL, pieces });
             for &index in tree.below(link).iter().rev() {
                 // What is above the palm was looked at already.
                 if tree.path(self.fingers.palm).contains(&index) {
@@ -287,20 +304,14 @@ impl Reader<'_> {
         }
     }
 
-    fn finger(
-        &mut self,
-        finger: usize,
-        chain: &Chain,
-        owned: &[(Owner, usize, Vec<Piece>)],
-    ) -> Result<FingerDescription, Fault> {
+    fn finger(&mut self, finger: usize, chain: &Chain, owned: &[Part]) -> Result<FingerDescription, Fault> {
         let (tree, fingers) = (self.tree, self.fingers);
         let notes = &mut self.report.notes;
         let joints::FingerJoints { base, mut joints, X_LTip } =
             joints::joints(tree, fingers, chain, self.options.acceleration, notes)?;
         let last = joints.len() - 1;
         for (place, joint) in joints.iter_mut().enumerate().take(last) {
-            let pieces = owned.iter().filter(|(owner, ..)| *owner == Owner::Finger(finger, place));
-            joint.link = pieces.flat_map(|(.., pieces)| pieces.iter().map(Piece::placed)).collect();
+            joint.link = placed(owned.iter().filter(|part| part.owner == Owner::Finger(finger, place)));
         }
         let tip = self.tip(finger, chain, &X_LTip, owned, &mut joints[last]);
         let rest = joints.iter().map(|joint| 0_f64.clamp(joint.lower, joint.upper)).collect();
@@ -321,16 +332,16 @@ impl Reader<'_> {
         finger: usize,
         chain: &Chain,
         X_LTip: &Pose,
-        owned: &[(Owner, usize, Vec<Piece>)],
+        owned: &[Part],
         joint: &mut JointDescription,
     ) -> Tip {
         let place = chain.moving.len() - 1;
-        let last = || owned.iter().filter(|(owner, ..)| *owner == Owner::Finger(finger, place));
-        let own: Vec<Piece> = last()
-            .filter(|(_, link, _)| *link == chain.tip)
-            .flat_map(|(.., pieces)| pieces.clone())
-            .collect();
-        let all: Vec<Piece> = last().flat_map(|(.., pieces)| pieces.clone()).collect();
+        let last = || owned.iter().filter(|part| part.owner == Owner::Finger(finger, place));
+        let pieces = |parts: &mut dyn Iterator<Item = &Part>| -> Vec<Piece> {
+            parts.flat_map(|part| part.pieces.clone()).collect()
+        };
+        let own = pieces(&mut last().filter(|part| part.link == chain.tip));
+        let all = pieces(&mut last());
         let has_own_link = chain.path.last() != chain.moving.last();
         let offset = match self.options.tip_offset[..] {
             [] => None,
@@ -338,16 +349,33 @@ impl Reader<'_> {
             ref each => Some(each[finger]),
         };
         let tip = Tip::new(X_LTip, offset, (&own, &all), self.radius, has_own_link);
+        let name = self.finger_name(chain);
         let beside = if tip.is_ball {
-            last().filter(|(_, link, _)| *link != chain.tip).flat_map(|(.., pieces)| pieces.clone()).collect()
+            let behind = pieces(&mut last().filter(|part| part.link != chain.tip));
+            let seen = self.seen(chain, last());
+            seen.trimmed(&tip, behind, self.radius, &mut self.report.notes, &name)
         } else {
             all
         };
-        let name = self.finger_name(chain);
-        self.report.tip_centers.push(format!("`{name}`: {}", tip.how));
         let kept = tip.cut(beside, self.radius, &mut self.report.notes, &name);
+        let free = tip.free(&kept, self.radius).to_degrees();
+        let how = &tip.how;
+        self.report
+            .tip_centers
+            .push(format!("`{name}`: {how}; free up to {free:.0}° from the finger's direction"));
         joint.link = kept.iter().map(Piece::placed).collect();
         tip
+    }
+
+    /// What is seen of the links that move with the tip.
+    fn seen<'p>(&mut self, chain: &Chain, parts: impl Iterator<Item = &'p Part>) -> Seen {
+        let mut seen = Seen { tip: Vec::new(), behind: Vec::new() };
+        for part in parts {
+            let pieces = self.shaper.seen(self.tree.link_of(part.link));
+            let pieces = pieces.into_iter().map(|piece| piece.moved(&part.X_BL));
+            if part.link == chain.tip { seen.tip.extend(pieces) } else { seen.behind.extend(pieces) }
+        }
+        seen
     }
 
     /// The tip link's name, unless a joint or the palm is called so too: `touching` needs names that are different.

@@ -85,14 +85,24 @@ impl Shaper {
             ([], visual) => (visual, "visual (it has no collision)"),
             (collision, _) => (collision, "collision"),
         };
+        let (all, done) = self.all(solids)?;
+        self.notes.push(format!("link `{}`: {} from its {source}", link.name, done.join(", ")));
+        Ok(all)
+    }
+
+    /// The convex pieces of a link as it is seen, in its frame; none where a mesh of it cannot be read: nothing depends on them alone.
+    pub fn seen(&mut self, link: &Link) -> Vec<Piece> {
+        self.all(&link.visual).map(|(pieces, _)| pieces).unwrap_or_default()
+    }
+
+    fn all(&mut self, solids: &[Solid]) -> Result<(Vec<Piece>, Vec<String>), Fault> {
         let (mut all, mut done) = (Vec::new(), Vec::new());
         for solid in solids {
             let (pieces, what) = self.solid(solid)?;
             all.extend(pieces);
             done.push(what);
         }
-        self.notes.push(format!("link `{}`: {} from its {source}", link.name, done.join(", ")));
-        Ok(all)
+        Ok((all, done))
     }
 
     fn solid(&mut self, solid: &Solid) -> Result<(Vec<Piece>, String), Fault> {

@@ -4,9 +4,14 @@ use super::document::{Geometry, Link};
 use super::hull;
 use super::solids::Piece;
 use regrasp_api::{Pose, Shape, Vec3, any_orthogonal};
+use std::f64::consts::{PI, TAU};
 
 /// The clearance (m) that planning keeps by default: a link that is thinner than the ball by less touches the object beside the ball.
-const CLEARANCE: f64 = 5e-4;
+pub(super) const CLEARANCE: f64 = 5e-4;
+/// A ball that can touch flat faces up to this angle (rad) from the finger's direction, however they are turned, is free enough.
+const FREE: f64 = 75.0 * PI / 180.0;
+/// Directions about the finger that are looked at.
+const TURNS: usize = 24;
 
 /// The ball's centre in the last link's frame L (m), the direction in which the finger ends, and how both were found.
 #[derive(Clone, Debug)]
@@ -89,31 +94,44 @@ impl Tip {
         }
         let kept: Vec<Piece> =
             pieces.into_iter().filter_map(|piece| below(piece, &self.outward, height)).collect();
-        let wide = self.widest(&kept, radius);
-        if wide > radius - CLEARANCE {
+        let free = self.free(&kept, radius);
+        if free < FREE {
             notes.push(format!(
-                "beside the ball of its tip ({:.1} mm) the last link of `{name}` reaches {:.1} mm from the middle: on flat faces the link can come \
-                 to touch first; a larger `fingertip_radius` helps",
+                "the last link of `{name}` is wide beside the ball of its tip ({:.1} mm): on flat faces, unless they are within {:.0}° of the finger's \
+                 direction, the link can come to touch first, so that boxes may be hard to turn; tips with a thicker cap, `fingertip_radius` = \
+                 {:.4}, allow {:.0}°",
                 1e3 * radius,
-                1e3 * wide
+                free.to_degrees(),
+                (1e4 * self.wide(&kept, FREE)).ceil() / 1e4,
+                FREE.to_degrees()
             ));
         }
         kept
     }
 
-    /// How far (m) the link reaches from the ball's centre, near the ball, in the direction across the finger in which it is widest.
-    fn widest(&self, pieces: &[Piece], radius: f64) -> f64 {
-        let near = |p: &&Vec3| (*p - self.center).dot(&self.outward).abs() < radius;
-        let corners =
-            || pieces.iter().flat_map(|piece| piece.corners.iter().filter(near).map(|p| (p, piece.radius)));
+    /// Up to which angle (rad, at most π/2) from the finger's direction the ball touches a flat face before the link does, however the face
+    /// is turned about the finger.
+    pub fn free(&self, pieces: &[Piece], radius: f64) -> f64 {
+        let degrees = (1..=90).map(|degree| f64::from(degree).to_radians());
+        degrees.take_while(|&angle| self.wide_at(pieces, angle) <= radius).last().unwrap_or(0.0)
+    }
+
+    /// The least radius (m) of a ball that is free up to an angle (rad).
+    fn wide(&self, pieces: &[Piece], angle: f64) -> f64 {
+        (0..=16).map(|i| self.wide_at(pieces, angle * f64::from(i) / 16.0)).fold(0.0, f64::max)
+    }
+
+    /// How far (m) the pieces with what planning keeps around them reach from the ball's centre, in the farthest direction at an angle
+    /// (rad) from the finger's.
+    fn wide_at(&self, pieces: &[Piece], angle: f64) -> f64 {
         let across = any_orthogonal(&self.outward);
         let other = self.outward.cross(&across);
         let reach = |i: usize| {
-            let (sin, cos) = (i as f64 * std::f64::consts::TAU / 16.0).sin_cos();
-            let n = across * cos + other * sin;
-            corners().map(|(p, radius)| n.dot(&(p - self.center)) + radius).fold(0.0, f64::max)
+            let (sin, cos) = (i as f64 * TAU / TURNS as f64).sin_cos();
+            let n = self.outward * angle.cos() + (across * cos + other * sin) * angle.sin();
+            pieces.iter().map(|piece| piece.reach(&n)).fold(f64::NEG_INFINITY, f64::max) - n.dot(&self.center)
         };
-        (0..16).map(reach).fold(0.0, f64::max)
+        (0..TURNS).map(reach).fold(f64::NEG_INFINITY, f64::max) + CLEARANCE
     }
 }
 
@@ -155,7 +173,7 @@ fn inside(own: &[Piece], center: &Vec3, radius: f64) -> bool {
 }
 
 /// The part of a piece with n · x ≤ height; `None` where nothing is left.
-fn below(piece: Piece, n: &Vec3, height: f64) -> Option<Piece> {
+pub(super) fn below(piece: Piece, n: &Vec3, height: f64) -> Option<Piece> {
     if piece.reach(n) <= height + 1e-9 {
         return Some(piece);
     }
