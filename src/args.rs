@@ -29,6 +29,8 @@ pub enum Command {
     Scenarios(ScenariosArgs),
     Schema(SchemaArgs),
     NewPlugin(NewPluginArgs),
+    Completions(crate::completions::CompletionsArgs),
+    Man(crate::man::ManArgs),
     Reference(crate::reference::ReferenceArgs),
 }
 

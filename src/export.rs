@@ -63,7 +63,8 @@ pub fn run(args: &ExportArgs) -> Result<(), Failure> {
     tell(args, &files, &scene.notes())
 }
 
-fn make_folder(folder: &Path) -> Result<(), Failure> {
+/// Makes a folder where there is none.
+pub fn make_folder(folder: &Path) -> Result<(), Failure> {
     let refuse = |reason: &dyn std::fmt::Display| {
         Failure::bad_input(format!("`{}` cannot take the files: {reason}", folder.display()))
     };

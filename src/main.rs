@@ -4,10 +4,12 @@
 
 mod args;
 mod compare;
+mod completions;
 mod export;
 mod failure;
 mod grasps;
 mod hand;
+mod man;
 mod new_plugin;
 mod overrides;
 mod plan;
@@ -47,6 +49,8 @@ fn main() -> ExitCode {
         Command::Scenarios(args) => scenarios::run(args),
         Command::Schema(args) => schema::run(args),
         Command::NewPlugin(args) => new_plugin::run(args),
+        Command::Completions(args) => completions::run(args),
+        Command::Man(args) => man::run(args),
         Command::Reference(args) => reference::run(args),
     };
     match done {

@@ -41,8 +41,8 @@ pub fn run(args: &ReferenceArgs) -> Result<(), Failure> {
 const GENERATED: &str = "<!-- Made by `cargo run -- reference book/src/reference`: change what it describes, not this page. -->\n\n";
 
 fn scenario_page() -> String {
-    let scenarios = scenario::SCENARIOS.iter().map(|file| file.text);
-    let hands = scenario::HANDS.iter().map(|file| file.text);
+    let scenarios = scenario::SCENARIOS.iter().map(|file| file.text).chain([RARE]);
+    let hands = scenario::HANDS.iter().map(|file| file.text).chain([RARE]);
     Page {
         introduction: SCENARIO,
         chapters: &[
@@ -62,6 +62,12 @@ fn scenario_page() -> String {
     }
     .text()
 }
+
+/// Keys that no built-in file uses.
+const RARE: &str = "\
+references = [\"the maker's drawings, 2025\"]\n\
+obstacle = [{ shape = { kind = \"box\", size = [0.2, 0.2, 0.01] } }, { shape = { kind = \"sphere\", radius = 0.02 } }]\n\
+palm = [{ shape = { kind = \"box\", size = [0.08, 0.08, 0.02] } }, { shape = { kind = \"sphere\", radius = 0.02 } }]\n";
 
 const SCENARIO: &str = "\
 # Scenario files

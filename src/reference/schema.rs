@@ -138,7 +138,10 @@ impl Chapter<'_> {
 
     fn example(&self, property: Property<'_>, paths: &[String], key: &str) -> String {
         let found = || paths.iter().find_map(|path| self.examples.get(&join(path, key)).cloned());
-        property.example().or_else(found).map(|value| code(&format!("{key} = {value}"))).unwrap_or_default()
+        let value = property.example().or_else(found).or_else(|| Some(property.default()));
+        let plain = !property.kind().contains("table");
+        let value = value.filter(|value| plain && !value.is_empty());
+        value.map(|value| code(&format!("{key} = {value}"))).unwrap_or_default()
     }
 
     fn anchor(&self, path: &str) -> String {
