@@ -4,8 +4,9 @@ mod common;
 
 use common::{length, meshes, path, reference};
 use nalgebra::Point3;
-use regrasp_api::{Contact, Mesh, Pose, Random, SurfaceParam, Vec3};
+use regrasp_api::{Contact, Mesh, Pose, Primitive, Random, SurfaceParam, Vec3};
 use regrasp_surfaces::geodesic::{Geodesic, GeodesicSettings};
+use regrasp_world::primitive_mesh;
 use std::f64::consts::{PI, TAU};
 
 /// A point follows every path, so that every pair has a length.
@@ -66,6 +67,23 @@ fn solids_that_are_not_convex_agree_with_brute_force() {
     agrees_with_brute_force(&meshes::angle_block(0.04, 0.02), 1, 200);
     agrees_with_brute_force(&meshes::torus(0.03, 0.012, 5, 4), 3, 60);
     agrees_with_brute_force(&meshes::bumpy(0.03, 0.15, 1), 7, 30);
+}
+
+/// Paths past saddles run along edges there, where rounding decides on which side of a vertex a ray passes.
+#[test]
+fn tori_of_any_size_have_paths_between_all_points() {
+    let mut random = Random::from_key(8, 0, 0, 0);
+    for _ in 0..40 {
+        let (ring, tube) = (0.022 + 0.008 * random.unit(), 0.007 + 0.004 * random.unit());
+        let mesh = primitive_mesh(&Primitive::Torus { ring_radius: ring, tube_radius: tube }, 1280).unwrap();
+        let surface = surface(&mesh);
+        for _ in 0..150 {
+            let (from, to) = (anywhere(&mesh, &mut random), anywhere(&mesh, &mut random));
+            let (there, back) = (length(&surface, &from, &to), length(&surface, &to, &from));
+            assert!((there - back).abs() <= 1e-3 * there + 1e-9, "{there} there, {back} back");
+            assert!(there >= (from.p_OC - to.p_OC).norm() - 1e-9);
+        }
+    }
 }
 
 /// Against a graph with 12 points on every edge, which is never too short.

@@ -116,7 +116,7 @@ impl<'a> Search<'a> {
         if y < self.polyhedron.snap {
             return; // the source lies on this edge: its other facet is in the star too
         }
-        let ends = [(frame.length - part.end()).max(0.0), frame.length - part.start().max(0.0)];
+        let ends = [(frame.length - part.end()).max(0.0), (frame.length - part.start().max(0.0)).max(0.0)];
         self.push(Window { half_edge: twin, parent: source | FLAG, ends, source: [x, -y], so_far: length });
     }
 
@@ -131,7 +131,8 @@ impl<'a> Search<'a> {
         let facet = window.half_edge / 3;
         let target = frame.unfold(&self.p_OT);
         let crossing = cross(&window.source, &target);
-        let clamped = crossing.clamp(window.ends[0], window.ends[1]);
+        // A window round a single ray past a saddle may have its ends swapped by rounding, which `clamp` would refuse.
+        let clamped = crossing.max(window.ends[0]).min(window.ends[1]);
         let straight = window.so_far
             + planar_norm(clamped - window.source[0], window.source[1])
             + planar_norm(clamped - target[0], target[1]);
@@ -293,7 +294,9 @@ impl<'a> Search<'a> {
                 let frame = &self.polyhedron.half_edges[window.half_edge as usize];
                 let ([ax, ay], [ix, iy]) = (frame.apex, window.source);
                 let (to_tail, to_source) = ((-ay).atan2(-ax), (iy - ay).atan2(ix - ax));
-                self.polyhedron.direction[outgoing as usize] + (to_source - to_tail).rem_euclid(TAU)
+                // A ray along the edge to the tail may seem to come from just beyond it.
+                let angle = (to_source - to_tail + PI).rem_euclid(TAU) - PI;
+                self.polyhedron.direction[outgoing as usize] + angle.max(0.0)
             }
             Arrival::Source(source, _) => {
                 self.direction_to(vertex, &self.scratch.sources[source as usize].p_OS)
