@@ -1,5 +1,6 @@
 //! The book's reference agrees with the program.
 
+mod exit_codes;
 mod plan_file;
 mod settings;
 mod shells;

@@ -1,1 +1,127 @@
-//! The page of plan files names every key that a plan has, and no other; the page of exit codes says what happens.
+//! The page of plan files names every key that a plan has, and no other.
+
+use crate::{page, printed};
+use regrasp::host::check_schema;
+use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// A place in a plan: keys, and `[]` for every item of a list.
+type Place = Vec<String>;
+
+/// Below these places a plan repeats what other pages describe.
+const ELSEWHERE: [&str; 2] = ["scenario.problem", "settings"];
+
+/// The places that the page names, in their order.
+fn documented() -> Vec<Place> {
+    let text = page("plan-file.md");
+    let keys = text.lines().filter_map(|line| Some(line.strip_prefix("| `")?.split_once('`')?.0.to_owned()));
+    let places: Vec<Place> = keys.map(|key| place(&key)).collect();
+    assert!(places.len() > 60, "only {} keys are documented", places.len());
+    places
+}
+
+/// `segments[].kind` as a place.
+fn place(key: &str) -> Place {
+    key.replace("[]", ".[]").split('.').map(str::to_owned).collect()
+}
+
+/// Whether a documented place, `{name}` standing for any key, is this one.
+fn fits(documented: &[String], found: &[String]) -> bool {
+    let fits = |(pattern, key): (&String, &String)| pattern == key || pattern.starts_with('{') && key != "[]";
+    documented.len() == found.len() && documented.iter().zip(found).all(fits)
+}
+
+/// All places of a plan but those that other pages describe.
+fn gather(value: &Value, here: &Place, found: &mut BTreeSet<Place>) {
+    let step = |key: &str| here.iter().cloned().chain([key.to_owned()]).collect::<Place>();
+    if here.len() > 2
+        && (here[..2].join(".") == ELSEWHERE[0] || here.last().is_some_and(|key| key == ELSEWHERE[1]))
+    {
+        return;
+    }
+    match value {
+        Value::Object(map) => map.iter().for_each(|(key, value)| {
+            found.insert(step(key));
+            gather(value, &step(key), found);
+        }),
+        Value::Array(items) => items.iter().for_each(|item| gather(item, &step("[]"), found)),
+        _ => {}
+    }
+}
+
+/// Problems and plugins whose plans together have every key.
+const PLANS: [&str; 4] = [
+    "plan sphere -o plan.json",
+    "plan sphere --use stability-test=equilibrium -o plan.json",
+    "plan ellip-obst -o plan.json",
+    "plan mine.toml -o plan.json",
+];
+
+/// A ball, free fingertips, a given workspace, and a plate close by, which is then one of the nearest bodies.
+fn with_a_plate_and_a_workspace() -> String {
+    let files = regrasp::study::scenario::SCENARIOS;
+    let ball = files.iter().find(|file| file.name == "sphere-free").expect("a built-in scenario");
+    let plate = "[[obstacle]]\nshape = { kind = \"box\", size = [0.2, 0.2, 0.01] }\npose = { position = [0.0, 0.0, 0.049] }\n\n\
+                 [workspace]\nlower = [-0.02, -0.02, 0.08]\nupper = [0.02, 0.02, 0.1]\n\n[start]";
+    assert_eq!(ball.text.matches("[start]").count(), 1);
+    ball.text.replace("[start]", plate)
+}
+
+fn plans() -> Vec<Value> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(folder.path().join("mine.toml"), with_a_plate_and_a_workspace())
+        .expect("the folder is ours");
+    let plan = |arguments: &&str| {
+        printed(folder.path(), arguments);
+        read(&folder.path().join("plan.json"))
+    };
+    PLANS.iter().map(plan).collect()
+}
+
+fn read(path: &Path) -> Value {
+    let text = std::fs::read_to_string(path).expect("the plan was written");
+    serde_json::from_str(&text).expect("a plan is JSON")
+}
+
+#[test]
+fn every_key_of_a_plan_is_documented_and_every_documented_key_occurs() {
+    let documented = documented();
+    let mut found = BTreeSet::new();
+    for plan in plans() {
+        gather(&plan, &Place::new(), &mut found);
+        scenario_and_hand_are_as_their_pages_say(&plan["scenario"]["problem"]);
+    }
+    for found in &found {
+        let known = documented.iter().any(|known| fits(known, found));
+        assert!(known, "`{}` is missing in book/src/reference/plan-file.md", found.join("."));
+    }
+    for known in &documented {
+        let occurs = found.iter().any(|found| fits(known, found));
+        assert!(occurs, "`{}` in book/src/reference/plan-file.md is in no plan", known.join("."));
+    }
+}
+
+/// What the page says of `scenario.problem`: its keys are those of scenario files and hand files.
+fn scenario_and_hand_are_as_their_pages_say(problem: &Value) {
+    let schema = |text: String| serde_json::from_str::<Value>(&text).expect("a schema is JSON");
+    let hand = schema(regrasp::study::scenario::hand_schema());
+    assert_eq!(check_schema(&problem["hand"], &hand), Ok(()));
+    let mut rest: Map<String, Value> = problem.as_object().expect("a problem has keys").clone();
+    rest.insert("hand".into(), json!({ "builtin": "four-finger" }));
+    let scenario = schema(regrasp::study::scenario::schema());
+    assert_eq!(check_schema(&Value::Object(rest), &scenario), Ok(()));
+}
+
+#[test]
+fn documented_places_are_told_apart() {
+    let fit = |pattern: &str, key: &[&str]| {
+        fits(&place(pattern), &key.iter().map(ToString::to_string).collect::<Place>())
+    };
+    assert!(fit(
+        "statistics.plugins.{slot}.calls",
+        &["statistics", "plugins", "local-planner.transfer", "calls"]
+    ));
+    assert!(fit("segments[].kind", &["segments", "[]", "kind"]));
+    assert!(!fit("segments[].kind", &["segments", "[]", "states"]) && !fit("{any}", &["[]"]));
+}

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 /// Words that tell that a number has no unit.
 const UNITLESS: &[&str] = &[
     "no unit",
+    "oefficient",
     "Probability",
     "fraction",
     "Share",

@@ -32,7 +32,7 @@ use regrasp_api::{Build, Entry, Slot};
 pub struct Demands {
     /// The settings to build it with, as JSON text; empty for the defaults.
     pub settings: String,
-    /// By how much, relative, a surface's paths may be longer than the shortest ones.
+    /// By how much (relative, no unit) a surface's paths may be longer than the shortest ones.
     pub geodesic_tolerance: f64,
 }
 

@@ -1,4 +1,6 @@
 //! The forces that hold the object, state by state.
+//!
+//! S. Boyd, B. Wegbreit, "Fast computation of optimal contact forces", IEEE T-RO 2007; the program is in `regrasp-physics`.
 
 use crate::ExportError;
 use regrasp_api::{Configuration, FingerIndex, Hand, ObjectModel, Vec3};

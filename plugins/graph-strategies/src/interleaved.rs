@@ -26,7 +26,7 @@ pub struct InterleavedSettings {
     /// Probability of α = 1 for a large graph, in 0..=1.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub end: f64,
-    /// Number of nodes after which 63 % of the way from `start` to `end` is made, 0.1..=1e6.
+    /// Number of nodes after which 63 % of the way from `start` to `end` is made (no unit), 0.1..=1e6.
     #[schemars(range(min = 0.1, max = 1e6))]
     pub growth: f64,
 }

@@ -55,13 +55,13 @@ impl Twist {
 /// One contact with an elliptic cone in scaled coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ScaledContact {
-    /// Position about the centroid over the length.
+    /// Position about the centroid over the length (no unit).
     pub r: Vec3,
     /// *Inward* unit normal.
     pub n: Vec3,
-    /// Coefficient of friction.
+    /// Coefficient of friction (no unit).
     pub mu: f64,
-    /// Torsional radius over the length.
+    /// Torsional radius over the length (no unit).
     pub gamma: f64,
 }
 

@@ -19,7 +19,7 @@ const SEPARATING_TWIST: u64 = 2;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ForceClosureSettings {
-    /// Margins (Q1, no unit) up to this one may be left undecided, which counts as not stable; 1e-7 to 1e-3, default 1e-6.
+    /// Margins (no unit: Ferrari and Canny's Q1) up to this one may be left undecided, which counts as not stable; 1e-7 to 1e-3, default 1e-6.
     ///
     /// Below 1e-7 rounding decides. A grasp with a larger margin is never refused.
     #[schemars(range(min = 1e-7, max = 1e-3))]

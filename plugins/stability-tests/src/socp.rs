@@ -20,7 +20,7 @@ pub struct SocpSettings {
     /// Slacks t (no unit) below this in absolute value are left undecided; 1e-9 to 0.1, default 1e-8, where the solver's sign becomes noise.
     #[schemars(range(min = 1e-9, max = 0.1))]
     pub undecided_slack: f64,
-    /// Smallest singular value of the scaled grasp map that counts as rank 6; 1e-12 to 0.1, default 1e-9.
+    /// Smallest singular value of the scaled grasp map (no unit) that counts as rank 6; 1e-12 to 0.1, default 1e-9.
     #[schemars(range(min = 1e-12, max = 0.1))]
     pub rank_tolerance: f64,
 }

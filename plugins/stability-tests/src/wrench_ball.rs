@@ -33,7 +33,7 @@ pub enum Center {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct WrenchBallSettings {
-    /// The margin that a stable grasp exceeds, no unit; 0 to 1, default 0: every force closure counts.
+    /// The margin that a stable grasp exceeds (no unit); 0 to 1, default 0: every force closure counts.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub least_margin: f64,
     /// Edges that replace a round cone, from inside, 3 to 64; default none: round cones as they are.

@@ -1,4 +1,6 @@
 //! A bounding volume hierarchy: which of many small things comes closest to a point.
+//!
+//! Boxes as in C. Ericson, "Real-time collision detection", Morgan Kaufmann 2005, chapter 6.
 
 use regrasp_api::{Vec3, any_orthogonal};
 

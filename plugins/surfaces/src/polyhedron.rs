@@ -162,7 +162,7 @@ impl Polyhedron {
         self.half_edges[previous(half_edge) as usize].vertex
     }
 
-    /// Whether a point lies in a facet, to rounding.
+    /// Whether a point (m, in O) lies in a facet, to rounding.
     pub fn holds(&self, facet: u32, p_OP: &Vec3) -> bool {
         let Some(edges) = self.half_edges.get(3 * facet as usize..3 * facet as usize + 3) else {
             return false;

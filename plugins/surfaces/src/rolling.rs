@@ -91,12 +91,12 @@ impl Rolling {
         self.outermost(&random.direction())
     }
 
-    /// The contact closest to a fingertip's centre.
+    /// The contact closest to a fingertip's centre `p_OF` (m).
     pub fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
         self.closest.project(&self.polyhedron, p_OF, hint)
     }
 
-    /// The contact straight ahead; where the fingertip would sink in there, pushed out to where it touches.
+    /// The contact a `distance` (m) straight ahead; where the fingertip would sink in there, pushed out to where it touches.
     pub fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
         self.settled(walk(&self.polyhedron, from, self.spot(from).place, direction_O, distance))
     }

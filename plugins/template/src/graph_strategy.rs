@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AlternateSettings {
-    /// The part of the steps that connects two components in place of sampling, 0..=0.9.
+    /// The part of the steps (no unit) that connects two components in place of sampling, 0..=0.9.
     #[schemars(range(min = 0.0, max = 0.9))]
     pub connect: f64,
 }

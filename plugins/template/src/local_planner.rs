@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct UpOverDownSettings {
-    /// The fingertip's step as a part of the problem's `regrasp_step`, 0.05..=1.
+    /// The fingertip's step as a part of the problem's `regrasp_step` (no unit), 0.05..=1.
     #[schemars(range(min = 0.05, max = 1.0))]
     pub step: f64,
 }

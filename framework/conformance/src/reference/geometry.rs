@@ -13,7 +13,7 @@ pub struct Closest {
     pub distance: f64,
 }
 
-/// The closest point of the mesh, the first of several; the sign by the normals that meet there.
+/// The closest point of the mesh to `p` (m, in the mesh's frame), the first of several; the sign by the normals that meet there.
 pub fn closest_on_mesh(mesh: &Mesh, p: &Vec3) -> Closest {
     let mut best = Closest { facet: 0, point: Vec3::zeros(), distance: f64::INFINITY };
     for facet in 0..mesh.facets().len() as u32 {
@@ -59,7 +59,7 @@ fn pseudonormal(mesh: &Mesh, point: &Vec3) -> Vec3 {
 /// Points closer than this (m) are one.
 const SAME: f64 = 1e-10;
 
-/// The foot on the facet's plane if it lies inside, otherwise the best of the three edges' points.
+/// The closest point (m) of a facet to `p`: the foot on its plane if it lies inside, otherwise the best of the three edges' points.
 pub fn closest_on_facet(mesh: &Mesh, facet: u32, p: &Vec3) -> Vec3 {
     let (corners, n) = (mesh.corners(facet), mesh.normal(facet));
     let foot = p - n * n.dot(&(p - corners[0]));
@@ -72,13 +72,13 @@ pub fn closest_on_facet(mesh: &Mesh, facet: u32, p: &Vec3) -> Vec3 {
     nearer(nearer(x, y), z)
 }
 
-/// The closest point of a segment.
+/// The closest point (m) to `p` of the segment from `a` to `b`.
 pub fn closest_on_segment(a: &Vec3, b: &Vec3, p: &Vec3) -> Vec3 {
     let along = b - a;
     a + along * ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
 }
 
-/// The closest point of the closed form.
+/// The closest point of the closed form to `p` (m, in its frame).
 pub fn closest_on_primitive(primitive: &Primitive, p: &Vec3) -> Closest {
     let (point, inside) = match *primitive {
         Primitive::Sphere { radius } => (along(p) * radius, p.norm() < radius),

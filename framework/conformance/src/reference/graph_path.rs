@@ -1,4 +1,7 @@
 //! Shortest paths over points on a mesh's edges, by Dijkstra's algorithm.
+//!
+//! E. Dijkstra, "A note on two problems in connexion with graphs", Numerische Mathematik 1959; the points on edges are those of M. Lanthier, A. Maheshwari,
+//! J.-R. Sack, "Approximating weighted shortest paths on polyhedral surfaces", SoCG 1997.
 
 use regrasp_api::{Mesh, Vec3};
 use std::cmp::Reverse;

@@ -1,4 +1,7 @@
 //! Whether the fingers that hold the object hold it stably, at every sample of the plan.
+//!
+//! Force closure by the largest ball of wrenches: C. Ferrari, J. Canny, "Planning optimal grasps", ICRA 1992; internal forces that prove it: L. Han,
+//! J. Trinkle, Z. Li, "Grasp analysis as linear matrix inequality problems", IEEE T-RA 2000.
 
 mod force;
 mod load;

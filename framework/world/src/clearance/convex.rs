@@ -32,12 +32,12 @@ struct Support {
 const CUTS: usize = 12;
 
 impl Convex {
-    /// A box, all of it body.
+    /// A box of these half edge lengths (m), all of it body.
     pub fn cuboid(half_size: Vec3) -> Self {
         Self { form: Primitive::Cuboid { half_size }, inner: 1.0 }
     }
 
-    /// The primitive around a polytope given by its facets' planes n·x = d; `None` for a torus, which is not convex, and
+    /// The primitive around a polytope given by its facets' planes n·x = d (m); `None` for a torus, which is not convex, and
     /// where the planes do not hold the origin.
     pub fn around(form: Primitive, planes: impl Iterator<Item = (Vec3, f64)>) -> Option<Self> {
         if matches!(form, Primitive::Torus { .. }) {

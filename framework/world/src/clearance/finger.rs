@@ -115,7 +115,7 @@ impl FingerBodies {
         self.on_others && self.hand.touching(self.parts[part].body, other.parts[other_part].body)
     }
 
-    /// Against one solid of palm or obstacles.
+    /// Against one solid of palm or obstacles, with the distance `clear` (m) between them.
     pub fn clear_of_fixed(&self, placed: &PlacedFinger, fixed: &Fixed, clear: f64) -> Result<(), BodyPair> {
         let compared = (0..self.parts.len()).filter(|&part| !self.by_construction(part, fixed));
         refused(compared, |&part| self.part_clear_of_fixed(placed, part, fixed, clear))
@@ -130,7 +130,7 @@ impl FingerBodies {
             }
     }
 
-    /// Its own links and fingertip against each other.
+    /// Its own links and fingertip against each other, with the distance `clear` (m) between them.
     #[inline]
     pub fn clear_of_itself(&self, placed: &PlacedFinger, clear: f64) -> Result<(), BodyPair> {
         let clear_pair = |&(i, j): &(usize, usize)| clear_parts((self, placed, i), (self, placed, j), clear);
@@ -138,7 +138,7 @@ impl FingerBodies {
             .map_err(|(i, j)| ordered(self.parts[i].body, self.parts[j].body))
     }
 
-    /// Against the object at `X_HO`, given also as a frame.
+    /// Against the object at `X_HO`, given also as a frame, with the distance `clear` (m) between them.
     #[inline]
     pub fn clear_of_object(
         &self,

@@ -9,7 +9,7 @@ pub(crate) struct Rod {
     pub a: Vec3,
     pub b: Vec3,
     pub radius: f64,
-    /// Radius of the ball about the rod's middle that holds it.
+    /// Radius of the ball about the rod's middle that holds it (m).
     pub reach: f64,
 }
 

@@ -1,4 +1,7 @@
 //! The motion of one joint as a screw in the hand's frame.
+//!
+//! R. Murray, Z. Li, S. Sastry, "A mathematical introduction to robotic manipulation", CRC Press 1994, section 3.2: a revolute joint turns about a
+//! line, a prismatic one slides along it, and a chain's pose is the product of these motions.
 
 use regrasp_api::{JointKind, Vec3};
 

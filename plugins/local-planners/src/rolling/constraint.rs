@@ -1,4 +1,7 @@
 //! The velocity constraint of rolling contact and its solution for one finger.
+//!
+//! A. Cole, J. Hauser, S. Sastry, "Kinematics and control of multifingered hands with rolling contact", IEEE T-AC 1989: the material points of both bodies
+//! at the contact have one velocity.
 
 use regrasp_api::{FingerJoints, MAX_FINGER_JOINTS, Mat3, TipKinematics, Vec3};
 

@@ -1,4 +1,7 @@
 //! Newton's method on the closure equations: every fingertip's centre at its radius from the object.
+//!
+//! J. Yakey, S. LaValle, L. Kavraki, "Randomized path planning for linkages with closed kinematic chains", IEEE T-RA 2001; the step of least norm as in
+//! D. Berenson, S. Srinivasa, J. Kuffner, "Task space regions", IJRR 2011.
 
 use crate::pose::Region;
 use nalgebra::{SMatrix, SVector, Vector6};

@@ -1,4 +1,6 @@
 //! Distances to a point by two sparse systems, both factorised once.
+//!
+//! K. Crane, C. Weischedel, M. Wardetzky, "Geodesics in heat", ACM TOG 32, 2013, algorithm 1.
 
 use super::delaunay::Triangles;
 use super::fine::{Fine, FinePoint};

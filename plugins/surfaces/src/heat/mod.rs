@@ -83,7 +83,7 @@ pub struct HeatSettings {
     /// Facets are cut into four until there are this many, in 1..=100000. Default 3000, a neutral choice.
     #[schemars(range(min = 1, max = 100_000))]
     pub fewest_facets: u32,
-    /// Time of the heat flow over the mean edge's length squared, in 0.1..=1000. Default 1, the paper's value.
+    /// Time of the heat flow over the mean edge's length squared (no unit), in 0.1..=1000. Default 1, the paper's value.
     #[schemars(range(min = 0.1, max = 1000.0))]
     pub smoothing: f64,
     /// An edge is sharp where its facets' normals differ by more than this angle (degrees), in 1..=180. Default 30, a neutral choice.

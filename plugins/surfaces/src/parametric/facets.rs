@@ -57,7 +57,7 @@ impl Facets {
         }))
     }
 
-    /// The partner of a point of the mesh on the closed form.
+    /// The partner of a point of the mesh (m, in O) on the closed form.
     pub fn out(&self, form: &ClosedForm, p: &Vec3) -> Vec3 {
         match &self.0 {
             Partner::Section(rim) => form.outward(&rim.scaled(p, |share| 1.0 / share)),
@@ -65,7 +65,7 @@ impl Facets {
         }
     }
 
-    /// The partner of a point of the closed form on the mesh, found from a facet nearby.
+    /// The partner of a point of the closed form (m, in O) on the mesh, found from a facet nearby.
     pub fn back(&self, form: &ClosedForm, rolling: &Rolling, p: &Vec3, hint: u32) -> Contact {
         let project = |p: &Vec3, hint: u32| rolling.project(p, Some(hint)).contact;
         match &self.0 {

@@ -23,7 +23,7 @@ pub(super) struct Ground {
 }
 
 impl Ground {
-    /// The closest point of the true surface.
+    /// The closest point of the true surface to `p` (m, in O).
     pub fn closest(&self, p: &Vec3) -> Closest {
         match &self.form {
             Some(form) => closest_on_primitive(form, p),
