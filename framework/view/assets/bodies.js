@@ -1,13 +1,18 @@
 // Shapes and the object as meshes of three.js.
 
 import * as THREE from "three";
-import { cross, dot, norm, scale, sub, unit, add, fromZ } from "./pose.js";
+import { cross, norm, scale, sub, unit, add, fromZ } from "./pose.js";
 
 /** Colours of the fingers: told apart by people who see few colours (M. Okabe, K. Ito, "Color universal design", 2008). */
 export const FINGER_COLORS = ["#e69f00", "#56b4e9", "#009e73", "#cc79a7", "#d55e00", "#f0e442", "#0072b2", "#8c8c8c"];
 
 /** Facets that meet at less than this are one smooth surface (cosine). */
 const CREASE = Math.cos((32 * Math.PI) / 180);
+
+/** A lit surface: `look` for any, `fine` beside it where a graphics processor draws. */
+export function surface(soft, look, fine) {
+    return soft ? new THREE.MeshLambertMaterial(look) : new THREE.MeshStandardMaterial({ ...look, ...fine });
+}
 
 export function place(object, pose) {
     object.position.set(...pose.p);
@@ -52,29 +57,24 @@ function shapeGeometry(shape, extent) {
 
 /** A mesh with the normals that look right: smooth over blunt edges, flat at sharp ones. */
 export function meshGeometry({ vertices, facets }) {
-    const vertex = (i) => [vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]];
-    const count = facets.length / 3;
-    const normals = [];
-    const around = new Map();
-    for (let f = 0; f < count; f++) {
-        const [a, b, c] = [0, 1, 2].map((k) => vertex(facets[3 * f + k]));
-        normals.push(cross(sub(b, a), sub(c, a)));
-        for (let k = 0; k < 3; k++) {
-            const corner = facets[3 * f + k];
-            if (!around.has(corner)) around.set(corner, []);
-            around.get(corner).push(f);
+    const corners = facets.length;
+    const [normals, lengths] = facetNormals(vertices, facets);
+    const [begins, around] = facetsAround(vertices.length / 3, facets);
+    const [positions, shading] = [new Float32Array(3 * corners), new Float32Array(3 * corners)];
+    for (let i = 0; i < corners; i++) {
+        const own = 3 * Math.floor(i / 3);
+        let [x, y, z] = [0, 0, 0];
+        for (let a = begins[facets[i]]; a < begins[facets[i] + 1]; a++) {
+            const other = 3 * around[a];
+            const cosine = normals[own] * normals[other] + normals[own + 1] * normals[other + 1] + normals[own + 2] * normals[other + 2];
+            if (cosine <= CREASE && other !== own) continue;
+            x += normals[other] * lengths[around[a]];
+            y += normals[other + 1] * lengths[around[a]];
+            z += normals[other + 2] * lengths[around[a]];
         }
-    }
-    const units = normals.map(unit);
-    const [positions, shading] = [new Float32Array(9 * count), new Float32Array(9 * count)];
-    for (let f = 0; f < count; f++) {
-        for (let k = 0; k < 3; k++) {
-            const corner = facets[3 * f + k];
-            const smooth = around.get(corner).filter((other) => dot(units[f], units[other]) > CREASE);
-            const normal = unit(smooth.map((other) => normals[other]).reduce(add, [0, 0, 0]));
-            positions.set(vertex(corner), 9 * f + 3 * k);
-            shading.set(normal, 9 * f + 3 * k);
-        }
+        const length = Math.hypot(x, y, z) || 1;
+        for (let k = 0; k < 3; k++) positions[3 * i + k] = vertices[3 * facets[i] + k];
+        [shading[3 * i], shading[3 * i + 1], shading[3 * i + 2]] = [x / length, y / length, z / length];
     }
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
@@ -82,11 +82,35 @@ export function meshGeometry({ vertices, facets }) {
     return geometry;
 }
 
+/** Each facet's unit normal, three numbers a facet, and twice its area. */
+function facetNormals(vertices, facets) {
+    const count = facets.length / 3;
+    const [normals, lengths] = [new Float64Array(3 * count), new Float64Array(count)];
+    const vertex = (i) => [vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]];
+    for (let f = 0; f < count; f++) {
+        const a = vertex(facets[3 * f]);
+        const normal = cross(sub(vertex(facets[3 * f + 1]), a), sub(vertex(facets[3 * f + 2]), a));
+        lengths[f] = norm(normal);
+        normals.set(unit(normal), 3 * f);
+    }
+    return [normals, lengths];
+}
+
+/** The facets around each vertex: those of vertex v are `around[begins[v]]` to `around[begins[v + 1] - 1]`. */
+function facetsAround(count, facets) {
+    const begins = new Uint32Array(count + 1);
+    for (const v of facets) begins[v + 1]++;
+    for (let v = 0; v < count; v++) begins[v + 1] += begins[v];
+    const [next, around] = [begins.slice(0, count), new Uint32Array(facets.length)];
+    facets.forEach((v, i) => (around[next[v]++] = Math.floor(i / 3)));
+    return [begins, around];
+}
+
 /** The paint of the object: eight octants, the four dark ones of different colours, so that no turn leaves it as it was. */
-export function painted(geometry) {
+export function painted(soft, geometry) {
     geometry.computeBoundingBox();
     const center = geometry.boundingBox.getCenter(new THREE.Vector3());
-    const material = new THREE.MeshStandardMaterial({ roughness: 0.55, metalness: 0.0 });
+    const material = surface(soft, {}, { roughness: 0.55, metalness: 0 });
     const color = (hex) => ({ value: new THREE.Color(hex) });
     const paint = {
         bodyCenter: { value: center },

@@ -23,6 +23,11 @@ export function headline(data, motion) {
     return [`seed ${data.seed}`, counts(data, motion), verdict].filter(Boolean).join(" · ");
 }
 
+function facets({ facets, count }) {
+    const drawn = facets.length / 3;
+    return drawn < count ? `${count} facets (drawn with ${drawn})` : `${count} facets`;
+}
+
 export function facts(parent, data, motion, player) {
     const list = element("dl", { class: "facts" });
     const reached = `${data.goals_reached.length} of ${data.goals}`;
@@ -30,7 +35,7 @@ export function facts(parent, data, motion, player) {
         ["Motion", counts(data, motion)],
         ["Goals reached", data.stopped_by ? `${reached} (stopped: ${data.stopped_by})` : reached],
         ["Hand", `${data.hand.name}, ${data.hand.fingers.length} fingers`],
-        ["Object", `${data.object.name}, ${data.object.facets.length / 3} facets, ${data.object.mass} kg, friction ${data.object.friction}`],
+        ["Object", `${data.object.name}, ${facets(data.object)}, ${data.object.mass} kg, friction ${data.object.friction}`],
         ["Contacts", data.cone ? `${data.contact_model}, μ = ${number(data.cone.mu)}${data.cone.gamma ? `, γ = ${number(data.cone.gamma)} m` : ""}` : data.contact_model],
     ];
     if (data.replay) rows.push(["Simulation", data.replay.caption]);

@@ -12,7 +12,7 @@ import { SPEEDS, bindings, keyName, listen } from "./keys.js";
 
 const id = (name) => document.getElementById(name);
 
-/** Frames longer than this (ms), many in a row, make the page draw with less care. */
+/** Frames longer than this (ms), many in a row, make the page draw with less care while it plays. */
 const SLOW_FRAME = 45;
 
 class App {
@@ -215,10 +215,10 @@ class App {
 
     frame(now) {
         this.player.tick(now);
-        this.stage.render();
+        this.stage.render(now);
         this.frames.push(now);
         if (this.frames.length > 40) this.frames.shift();
-        if (this.player.playing && this.frames.length === 40 && now - this.frames[0] > 39 * SLOW_FRAME) this.stage.coarsen();
+        if (this.player.playing && this.frames.length === 40 && now - this.frames[0] > 39 * SLOW_FRAME) this.stage.slow = true;
         requestAnimationFrame((next) => this.frame(next));
     }
 

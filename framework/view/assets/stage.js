@@ -2,7 +2,7 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/orbit";
-import { FINGER_COLORS, axes, meshGeometry, painted, place, shapeMesh } from "./bodies.js";
+import { FINGER_COLORS, axes, meshGeometry, painted, place, shapeMesh, surface } from "./bodies.js";
 import { ContactMarks, Trace } from "./marks.js";
 import { norm, poseAt, unit } from "./pose.js";
 
@@ -17,13 +17,19 @@ export const LAYERS = [
     ["replay", "Simulated object", "r", true],
 ];
 
+/** How long (ms) nothing must have changed before a picture is drawn with all care where that is slow. */
+const REST = 200;
+
 export class Stage {
     constructor(canvas, data, motion) {
         this.canvas = canvas;
         this.motion = motion;
         this.layers = Object.fromEntries(LAYERS.map(([key]) => [key, []]));
         THREE.Object3D.DEFAULT_UP.set(0, 0, 1);
-        this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+        this.soft = this.quick = drawsInSoftware();
+        this.slow = false;
+        // Without a graphics processor every sample of a pixel costs; pictures at rest are drawn finer instead.
+        this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.soft, powerPreference: "high-performance" });
         this.renderer.shadowMap.enabled = true;
         this.scene = new THREE.Scene();
         this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 10);
@@ -43,8 +49,8 @@ export class Stage {
 
     build(data) {
         const size = data.hand.tip_radius;
-        const neutral = new THREE.MeshStandardMaterial({ color: "#98a0ab", roughness: 0.65, metalness: 0.1 });
-        const rough = new THREE.MeshStandardMaterial({ color: "#8d7f6d", roughness: 0.9, transparent: true, opacity: 0.85 });
+        const neutral = surface(this.soft, { color: "#98a0ab" }, { roughness: 0.65, metalness: 0.1 });
+        const rough = surface(this.soft, { color: "#8d7f6d", transparent: true, opacity: 0.85 }, { roughness: 0.9 });
         const wide = Math.max(...data.hand.fingers.map((finger) => norm(finger.base))) * 4 + 8 * size;
         this.still = new THREE.Group();
         data.hand.palm.forEach((shape) => this.still.add(shapeMesh(shape, neutral, wide)));
@@ -60,15 +66,15 @@ export class Stage {
     finger(finger, f, size) {
         const color = FINGER_COLORS[f % FINGER_COLORS.length];
         const skin = new THREE.Color("#c3c8d0").lerp(new THREE.Color(color), 0.16);
-        const material = new THREE.MeshStandardMaterial({ color: skin, roughness: 0.5, metalness: 0.15 });
+        const material = surface(this.soft, { color: skin }, { roughness: 0.5, metalness: 0.15 });
         const links = finger.joints.map((joint) => {
             const link = new THREE.Group();
             joint.shapes.forEach((shape) => link.add(shapeMesh(shape, material, size)));
             this.scene.add(link);
             return link;
         });
-        const rubber = new THREE.MeshStandardMaterial({ color, roughness: 0.45 });
-        const tip = new THREE.Mesh(new THREE.SphereGeometry(size, 40, 28), rubber);
+        const rubber = surface(this.soft, { color }, { roughness: 0.45 });
+        const tip = new THREE.Mesh(new THREE.SphereGeometry(size, 32, 20), rubber);
         tip.position.set(...finger.tip);
         tip.castShadow = true;
         links.at(-1).add(tip);
@@ -78,7 +84,7 @@ export class Stage {
     object(data, size) {
         const geometry = meshGeometry(data.object);
         this.body = new THREE.Group();
-        const skin = new THREE.Mesh(geometry, painted(geometry));
+        const skin = new THREE.Mesh(geometry, painted(this.soft, geometry));
         skin.castShadow = skin.receiveShadow = true;
         this.body.add(skin);
         geometry.computeBoundingSphere();
@@ -100,7 +106,7 @@ export class Stage {
 
     /** A second, translucent object that goes where a simulation took it. */
     addReplay(geometry) {
-        const material = new THREE.MeshStandardMaterial({ color: "#ff5da2", transparent: true, opacity: 0.42, depthWrite: false });
+        const material = surface(this.soft, { color: "#ff5da2", transparent: true, opacity: 0.42, depthWrite: false }, {});
         // Where both are in the same place, this one is in front.
         Object.assign(material, { polygonOffset: true, polygonOffsetFactor: -4, polygonOffsetUnits: -4 });
         this.ghost = new THREE.Mesh(geometry, material);
@@ -155,7 +161,7 @@ export class Stage {
         const sun = new THREE.DirectionalLight("#fff6e8", 2.3);
         sun.position.copy(this.center).add(new THREE.Vector3(0.9 * r, -1.1 * r, 3.2 * r));
         sun.target.position.copy(this.center);
-        sun.castShadow = true;
+        sun.castShadow = !this.quick;
         sun.shadow.mapSize.set(1024, 1024);
         Object.assign(sun.shadow.camera, { left: -1.6 * r, right: 1.6 * r, top: 1.6 * r, bottom: -1.6 * r, near: 0.1 * r, far: 8 * r });
         sun.shadow.bias = -0.0005;
@@ -197,7 +203,8 @@ export class Stage {
     resize() {
         const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
         if (!width || !height) return;
-        this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2) * (this.coarse ? 0.7 : 1));
+        const full = Math.min(window.devicePixelRatio || 1, 2);
+        this.renderer.setPixelRatio(this.quick ? Math.min(full, 1) : this.soft ? 2 : full);
         this.renderer.setSize(width, height, false);
         this.camera.aspect = width / height;
         // A narrow window must not cut off the sides.
@@ -206,11 +213,11 @@ export class Stage {
         this.stale = true;
     }
 
-    /** Draws with less care, for machines without a graphics processor. */
-    coarsen() {
-        if (this.coarse) return;
-        this.coarse = true;
-        this.sun.castShadow = false;
+    /** With less care: no shadows, no more pixels than the screen needs. */
+    setQuick(quick) {
+        if (quick === this.quick) return;
+        this.quick = quick;
+        this.sun.castShadow = !quick;
         this.resize();
     }
 
@@ -229,11 +236,24 @@ export class Stage {
         if (this.ghost && pose) place(this.ghost, pose);
     }
 
-    render() {
-        if (!this.stale) return;
+    /** Draws what has changed; where drawing is slow with less care while it changes, and once more with all care when it rests. */
+    render(now = performance.now()) {
+        const rests = !this.stale && this.quick && now - this.drawn > REST;
+        if (!this.stale && !rests) return;
+        this.setQuick(!rests && (this.soft || this.slow));
+        if (!rests) this.drawn = now;
         this.stale = false;
         this.renderer.render(this.scene, this.camera);
     }
+}
+
+/** Whether this browser has no graphics processor to draw with, as far as it tells. */
+function drawsInSoftware() {
+    const context = document.createElement("canvas").getContext("webgl2");
+    const info = context?.getExtension("WEBGL_debug_renderer_info");
+    const name = String(context?.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : context.RENDERER) ?? "");
+    context?.getExtension("WEBGL_lose_context")?.loseContext();
+    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }
 
 function contactsOf(states, segment, finger) {

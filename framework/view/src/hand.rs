@@ -1,12 +1,12 @@
 //! Hand and obstacles as the page draws them.
 
 use crate::ViewError;
+use crate::mesh::MeshData;
 use crate::number::{micro, nano};
 use regrasp_api::{
-    FingerDescription, HandDescription, JointKind, MeshSource, PlacedShape, PoseDescription, Problem, Shape,
+    FingerDescription, HandDescription, JointKind, PlacedShape, PoseDescription, Problem, Shape,
 };
 use serde::Serialize;
-use std::path::Path;
 
 /// A pose: position (m), quaternion w, x, y, z.
 pub(crate) type PoseData = [f64; 7];
@@ -61,22 +61,26 @@ enum Form {
     Mesh(MeshData),
 }
 
-/// A mesh, flattened.
-#[derive(Serialize)]
-pub(crate) struct MeshData {
-    pub vertices: Vec<f64>,
-    pub facets: Vec<u32>,
+impl HandData {
+    pub(crate) fn meshes(&mut self) -> impl Iterator<Item = &mut MeshData> {
+        let links =
+            self.fingers.iter_mut().flat_map(|finger| &mut finger.joints).flat_map(|joint| &mut joint.shapes);
+        self.palm.iter_mut().chain(links).filter_map(ShapeData::mesh)
+    }
 }
 
-impl MeshData {
-    pub(crate) fn new(mesh: &regrasp_api::Mesh) -> Self {
-        let vertices = mesh.vertices().iter().flat_map(|v| [nano(v.x), nano(v.y), nano(v.z)]).collect();
-        Self { vertices, facets: mesh.facets().concat() }
+impl ObstacleData {
+    pub(crate) fn mesh(&mut self) -> Option<&mut MeshData> {
+        self.shape.mesh()
     }
+}
 
-    fn of_source(source: &MeshSource, key: &str) -> Result<Self, ViewError> {
-        // A plan stands alone: its meshes are inside, and no folder is looked into.
-        Ok(Self::new(&regrasp_world::load_mesh(source, Path::new(""), key)?))
+impl ShapeData {
+    fn mesh(&mut self) -> Option<&mut MeshData> {
+        match &mut self.form {
+            Form::Mesh(mesh) => Some(mesh),
+            _ => None,
+        }
     }
 }
 

@@ -11,6 +11,7 @@ mod error;
 mod extras;
 mod hand;
 mod html;
+mod mesh;
 mod motion;
 mod number;
 mod scene;

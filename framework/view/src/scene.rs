@@ -1,7 +1,8 @@
 //! Everything at rest: hand, object, obstacles.
 
 use crate::ViewError;
-use crate::hand::{HandData, MeshData, ObstacleData, hand, obstacles};
+use crate::hand::{HandData, ObstacleData, hand, obstacles};
+use crate::mesh::{MeshData, thin};
 use regrasp_api::Problem;
 use serde::Serialize;
 use std::path::Path;
@@ -24,7 +25,7 @@ struct ObjectData {
 
 pub(crate) fn scene(problem: &Problem) -> Result<SceneData, ViewError> {
     let object = regrasp_world::load_object(&problem.object, Path::new(""))?;
-    Ok(SceneData {
+    let mut scene = SceneData {
         hand: hand(&problem.hand)?,
         object: ObjectData {
             name: problem.object.name.clone(),
@@ -33,5 +34,8 @@ pub(crate) fn scene(problem: &Problem) -> Result<SceneData, ViewError> {
             mesh: MeshData::new(&object.mesh),
         },
         obstacles: obstacles(problem)?,
-    })
+    };
+    let obstacles = scene.obstacles.iter_mut().filter_map(ObstacleData::mesh);
+    thin(scene.hand.meshes().chain(obstacles).chain([&mut scene.object.mesh]));
+    Ok(scene)
 }
