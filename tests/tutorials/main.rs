@@ -8,4 +8,11 @@ mod plans;
 mod workshop;
 
 /// The tutorials: role, name of the plugin, slot.
-const TUTORIALS: [(&str, &str, &str); 1] = [("contact-model", "greasy", "contact-model")];
+const TUTORIALS: [(&str, &str, &str); 6] = [
+    ("contact-model", "greasy", "contact-model"),
+    ("stability-test", "concurrent", "stability-test"),
+    ("surface", "taut", "surface"),
+    ("sampler", "fingers-first", "sampler"),
+    ("local-planner", "hop", "local-planner.regrasp"),
+    ("graph-strategy", "mend", "graph-strategy"),
+];

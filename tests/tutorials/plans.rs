@@ -6,7 +6,12 @@ use regrasp::planner::{Clock, Silent};
 use regrasp::study::{NeverStops, Run, RunOptions, Setup, scenario};
 
 // A dependency alone registers nothing.
+use concurrent_stability_test as _;
+use fingers_first_sampler as _;
 use greasy_contact_model as _;
+use hop_local_planner as _;
+use mend_graph_strategy as _;
+use taut_surface as _;
 
 struct NoClock;
 

@@ -1,0 +1,6 @@
+//! The plugin keeps the laws of its role.
+#![allow(missing_docs)]
+
+use concurrent_stability_test as _; // a dependency alone registers nothing
+
+regrasp_conformance::registered_plugins_conform!();
