@@ -4,20 +4,9 @@
 //!
 //! A finger that holds the object has a dark tip, a lifted one a red tip. The cross painted on the object shows how it turns.
 
-use regrasp::host::Registry;
-use regrasp::planner::{Clock, Silent};
 use regrasp::study::picture::{Bounds, Picture, STYLE, Scene};
-use regrasp::study::scenario;
-use regrasp::study::{NeverStops, RunOptions, Setup};
 use std::error::Error;
 use std::fmt::Write;
-
-struct NoClock;
-impl Clock for NoClock {
-    fn seconds(&self) -> f64 {
-        0.0
-    }
-}
 
 /// Frames side by side, and rows of them.
 const GRID: (usize, usize) = (4, 2);
@@ -50,11 +39,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
     let name = words.next().unwrap_or("sphere".into());
     let file = words.next().unwrap_or(format!("{name}.svg"));
-    let registry = Registry::linked()?;
-    let scenario = scenario::load(&name, &registry)?;
-    let setup = Setup::new(&scenario, &scenario.choices, &registry)?;
-    let options = RunOptions { seed: 0, threads: 1, stop: &NeverStops, clock: &NoClock, progress: &Silent };
-    let run = setup.run(&options)?;
+    let scenario = regrasp::load(&name)?;
+    let run = regrasp::solve(&scenario, 0)?;
     let segments = run.outcome.motion.segments.iter();
     let states: Vec<_> = segments.flat_map(|segment| segment.states.iter().zip(&segment.times)).collect();
     let Some(last) = states.len().checked_sub(1) else {

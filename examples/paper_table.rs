@@ -6,35 +6,24 @@
 //! The paper: A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007, averages on an
 //! Athlon64 3500+. It gives no dimensions, so that the problems are alike, not the same.
 
-use regrasp::host::Registry;
-use regrasp::planner::{Clock, Silent};
+use regrasp::Stopwatch;
 use regrasp::study::compare::{PaperRow, RunName, RunRecord, paper_table};
-use regrasp::study::scenario::{self, Scenario};
-use regrasp::study::{NeverStops, RunOptions, Setup};
+use regrasp::study::scenario::Scenario;
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::time::Instant;
 
 /// The paper's three examples, and four of their kind.
 const EXAMPLES: [&str; 7] =
     ["sphere", "cubic", "ellip-obst", "sphere-tilt", "sphere-free", "cube-free", "ellipsoid-free"];
 
-struct Watch(Instant);
-impl Clock for Watch {
-    fn seconds(&self) -> f64 {
-        self.0.elapsed().as_secs_f64()
-    }
-}
-
 /// The runs of a scenario, a run a seed.
-fn runs(scenario: &Scenario, seeds: u64, registry: &Registry) -> Result<Vec<RunRecord>, Box<dyn Error>> {
-    let setup = Setup::new(scenario, &scenario.choices, registry)?;
-    let clock = Watch(Instant::now());
+fn runs(scenario: &Scenario, seeds: u64) -> Result<Vec<RunRecord>, Box<dyn Error>> {
+    let setup = regrasp::setup(scenario)?;
     let run = |seed| {
-        let options = RunOptions { seed, threads: 1, stop: &NeverStops, clock: &clock, progress: &Silent };
         let name = RunName { scenario: &scenario.name, variant: "base", seed };
         // The times of the single roles are not asked for here.
-        Ok(RunRecord::of_run(name, &setup.run(&options)?, scenario.hand.as_ref(), BTreeMap::new()))
+        let run = setup.run(&Stopwatch::start().options(seed))?;
+        Ok(RunRecord::of_run(name, &run, scenario.hand.as_ref(), BTreeMap::new()))
     };
     (0..seeds).map(run).collect()
 }
@@ -46,11 +35,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     if names.is_empty() {
         names = EXAMPLES.map(str::to_owned).to_vec();
     }
-    let registry = Registry::linked()?;
     let mut solved = Vec::new();
     for name in names {
-        let scenario = scenario::load(&name, &registry)?;
-        let runs = runs(&scenario, seeds, &registry)?;
+        let scenario = regrasp::load(&name)?;
+        let runs = runs(&scenario, seeds)?;
         solved.push((scenario, runs));
     }
     let rows = solved.iter().map(|(scenario, runs)| PaperRow {

@@ -5,37 +5,16 @@
 //! Start and goal keep the scenario's position; both orientations are uniform, and no grasp is given. A pair counts as solved if planning
 //! takes at most two seconds. What is not solved is listed with the seed that repeats it and the rejections that led there.
 
-use regrasp::api::{Interrupt, Pose, PoseDescription, Random, Reason, Slot};
-use regrasp::host::Registry;
-use regrasp::plan::StoppedBy;
-use regrasp::planner::{Clock, Silent, Status};
-use regrasp::study::scenario::{self, Scenario};
-use regrasp::study::{Run, RunOptions, Setup, Stop};
+use regrasp::Stopwatch;
+use regrasp::api::{Pose, PoseDescription, Random, Reason, Slot};
+use regrasp::planner::Status;
+use regrasp::study::Run;
+use regrasp::study::scenario::Scenario;
 use std::error::Error;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How long one pair may take.
 const PATIENCE: Duration = Duration::from_secs(2);
-
-struct Watch(Instant);
-
-impl Clock for Watch {
-    fn seconds(&self) -> f64 {
-        self.0.elapsed().as_secs_f64()
-    }
-}
-
-impl Interrupt for Watch {
-    fn interrupted(&self) -> bool {
-        self.0.elapsed() > PATIENCE
-    }
-}
-
-impl Stop for Watch {
-    fn cause(&self) -> StoppedBy {
-        StoppedBy::TimeLimit
-    }
-}
 
 /// One goal, and random orientations at start and goal.
 fn turn(scenario: &mut Scenario, seed: u64) -> Result<(), Box<dyn Error>> {
@@ -49,11 +28,10 @@ fn turn(scenario: &mut Scenario, seed: u64) -> Result<(), Box<dyn Error>> {
 }
 
 /// Plans and verifies the pair with this number.
-fn run(scenario: &mut Scenario, seed: u64, registry: &Registry) -> Result<Run, Box<dyn Error>> {
+fn run(scenario: &mut Scenario, seed: u64) -> Result<Run, Box<dyn Error>> {
     turn(scenario, seed)?;
-    let setup = Setup::new(scenario, &scenario.choices, registry)?;
-    let watch = Watch(Instant::now());
-    Ok(setup.run(&RunOptions { seed, threads: 1, stop: &watch, clock: &watch, progress: &Silent })?)
+    let setup = regrasp::setup(scenario)?;
+    Ok(setup.run(&Stopwatch::limited(PATIENCE).options(seed))?)
 }
 
 /// The most frequent rejections, most frequent first.
@@ -68,11 +46,11 @@ fn causes(run: &Run) -> String {
 }
 
 /// Plans every pair and prints one row.
-fn row(name: &str, pairs: u64, registry: &Registry) -> Result<(), Box<dyn Error>> {
-    let mut scenario = scenario::load(name, registry)?;
+fn row(name: &str, pairs: u64) -> Result<(), Box<dyn Error>> {
+    let mut scenario = regrasp::load(name)?;
     let (mut times, mut wrong, mut failures) = (Vec::new(), 0, Vec::new());
     for seed in 0..pairs {
-        let run = run(&mut scenario, seed, registry)?;
+        let run = run(&mut scenario, seed)?;
         let solved = run.outcome.status == Status::Solved;
         wrong += u32::from(solved && !run.is_verified());
         match solved {
@@ -96,10 +74,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     if names.is_empty() {
         names = ["sphere", "cubic"].map(str::to_owned).to_vec();
     }
-    let registry = Registry::linked()?;
     println!("{pairs} pairs        solved  wrong    median      90%  slowest   (ms of planning, one thread)");
     for name in names {
-        row(&name, pairs, &registry)?;
+        row(&name, pairs)?;
     }
     Ok(())
 }

@@ -1,8 +1,8 @@
 //! One run: from a scenario to a plan that was verified.
 
 mod error;
-mod grasps;
 mod plan_file;
+mod task;
 
 pub use error::*;
 
