@@ -413,6 +413,20 @@ def test_a_picture_at_rest_is_drawn_with_more_care_than_one_that_moves(folder, v
     page.wait_for_function(f"{width} === 2 * document.getElementById('canvas').clientWidth")
 
 
+def test_without_3d_the_rest_of_the_page_works(folder, browser):
+    context = browser.new_context()
+    context.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    page = context.new_page()
+    page.goto((folder / "graph.html").resolve().as_uri())
+    page.wait_for_function("document.body.dataset.ready === 'true'")
+    assert "WebGL" in page.locator("#problem").inner_text()
+    page.evaluate("regrasp.play()")
+    page.wait_for_function("regrasp.time > 0.1")
+    page.get_by_role("tab", name="Graph").click()
+    assert page.locator(".node").count() > 4
+    context.close()
+
+
 def finer(plan, wanted):
     """The same motion with at least so many states: each step is halved until there are enough."""
     plan = copy.deepcopy(plan)

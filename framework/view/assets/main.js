@@ -2,7 +2,7 @@
 
 import { Motion, lastNotAfter } from "./motion.js";
 import { between, poseAt } from "./pose.js";
-import { LAYERS, Stage } from "./stage.js";
+import { LAYERS, NoStage, Stage } from "./stage.js";
 import { Player } from "./player.js";
 import { curves, element } from "./curves.js";
 import { SegmentList, segmentDetail, segmentTitle, strip } from "./segments.js";
@@ -20,7 +20,7 @@ class App {
         this.data = data;
         this.motion = new Motion(data);
         this.player = new Player(this.motion);
-        this.stage = new Stage(id("canvas"), data, this.motion);
+        this.stage = this.newStage();
         this.frames = [];
         id("headline").textContent = headline(data, this.motion);
         this.curves = curves(id("curves"), data, this.motion, this.player);
@@ -39,6 +39,20 @@ class App {
         this.show();
         this.stage.render();
         requestAnimationFrame((now) => this.frame(now));
+    }
+
+    newStage() {
+        try {
+            return new Stage(id("canvas"), this.data, this.motion);
+        } catch (error) {
+            this.complain(`This browser draws nothing in 3-D (${error.message}); switch WebGL on to see the hand move.`);
+            return new NoStage(this.data);
+        }
+    }
+
+    complain(text) {
+        id("problem").hidden = false;
+        id("problem").textContent = text;
     }
 
     /** Whether there is anything of a layer to show. */
@@ -163,8 +177,7 @@ class App {
     checkTips() {
         this.disagreement = this.motion.disagreement(this.data.motion.checks);
         if (this.disagreement > 1e-6) {
-            id("problem").hidden = false;
-            id("problem").textContent = `This page puts a fingertip ${(this.disagreement * 1e6).toFixed(1)} µm from where it should be: do not trust it.`;
+            this.complain(`This page puts a fingertip ${(this.disagreement * 1e6).toFixed(1)} µm from where it should be: do not trust it.`);
             console.error("forward kinematics disagree by", this.disagreement, "m");
         }
     }

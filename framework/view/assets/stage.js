@@ -247,6 +247,15 @@ export class Stage {
     }
 }
 
+/** In the place of a stage where the browser draws nothing in 3-D: all else of the page can still be used. */
+export class NoStage {
+    constructor(data) {
+        const { vertices } = data.object;
+        this.bodyRadius = vertices.reduce((most, x) => Math.max(most, Math.abs(x)), 1e-6);
+        for (const nothing of ["show", "showReplay", "render", "toggle", "theme", "resetCamera"]) this[nothing] = () => {};
+    }
+}
+
 /** Whether this browser has no graphics processor to draw with, as far as it tells. */
 function drawsInSoftware() {
     const context = document.createElement("canvas").getContext("webgl2");
