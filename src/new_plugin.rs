@@ -3,7 +3,7 @@
 use crate::args::{LibraryArgs, NewPluginArgs};
 use crate::{Failure, plugins, say};
 use regrasp::api::{Role, Slot};
-use regrasp::host::{did_you_mean, near};
+use regrasp::host::{Choices, did_you_mean, near};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -112,6 +112,7 @@ impl Draft {
             ("role", role.name().to_owned()),
             ("name", name.to_owned()),
             ("slot", slot.name().to_owned()),
+            ("default", default_name(slot)),
             ("summary", summary(source).to_owned()),
             ("crate", package.replace('-', "_")),
             ("package", package.clone()),
@@ -147,14 +148,24 @@ impl Draft {
     }
 
     fn next_steps(&self, folder: &Path) -> String {
-        let steps = "    cargo test\n    cargo build --release\n    regrasp plan sphere --load {{library}} --use {{slot}}={{name}}\n";
-        let folder = folder.display();
-        format!(
-            "`{folder}` has the plugin `{}`; it works as it is:\n    cd {folder}\n{}",
-            self.words[0].1,
-            self.fill(steps)
-        )
+        let steps = "\
+`{{folder}}` has the plugin `{{id}}`; it works as it is:
+    cd {{folder}}
+    cargo test                  # the laws of its role
+    cargo build --release       # {{library}}
+    regrasp plan sphere --load {{library}} --use {{slot}}={{name}}
+    regrasp compare sphere --load {{library}} --vary {{slot}}={{default}},{{name}} -o study
+The plugin is in `src/lib.rs`: make it yours, and do the same again.
+";
+        self.fill(&steps.replace("{{folder}}", &folder.display().to_string()))
     }
+}
+
+/// The name, without its role, of the plugin that fills a slot by default.
+fn default_name(slot: Slot) -> String {
+    let choices = Choices::default();
+    let id = &choices.choice(slot).id;
+    id.rsplit_once('/').map_or(id.as_str(), |(_, name)| name).to_owned()
 }
 
 /// What a source says of itself in its first line.
@@ -197,6 +208,8 @@ mod tests {
             assert_eq!(files.iter().find(open), None);
             assert!(text("src/lib.rs").contains(&format!("id: \"{}/mine\"", role.name())), "{role:?}");
             assert!(!text("src/lib.rs").contains("template"), "{role:?}");
+            let steps = draft(role).next_steps(Path::new("mine"));
+            assert!(!steps.contains("{{") && steps.contains("cd mine\n"), "{steps}");
             for name in ["Cargo.toml", "dynamic/Cargo.toml"] {
                 let manifest: toml::Table = text(name).parse().unwrap();
                 let path = manifest["dependencies"]["regrasp-api"]["path"].as_str().unwrap();
