@@ -1,5 +1,6 @@
-//! Meshes from STL, OBJ and PLY files or given in place.
+//! Meshes from STL, OBJ, PLY and COLLADA files or given in place.
 
+mod collada;
 mod obj;
 mod ply;
 mod polygon;
@@ -16,7 +17,7 @@ pub const MAX_FACETS: usize = 2_000_000;
 /// The largest mesh file (bytes): an ASCII STL of [`MAX_FACETS`] facets is smaller.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// Vertices and facets as a file has them: in the file's unit, not yet checked.
+/// Vertices and facets as a file has them: in the file's unit (COLLADA: in metres), not yet checked.
 type Raw = (Vec<Vec3>, Vec<[u32; 3]>);
 
 /// The mesh of `source`, in metres; a file is looked for relative to the folder `base`.
@@ -85,7 +86,8 @@ fn read(path: &Path) -> Result<Raw, String> {
         "stl" => stl::parse,
         "obj" => obj::parse,
         "ply" => ply::parse,
-        _ => return Err(format!("`.{extension}` is not one of .stl, .obj, .ply; convert the file")),
+        "dae" => collada::parse,
+        _ => return Err(format!("`.{extension}` is not one of .stl, .obj, .ply, .dae; convert the file")),
     };
     let size = std::fs::metadata(path).map_err(|error| error.to_string())?.len();
     if size > MAX_BYTES {
