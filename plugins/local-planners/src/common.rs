@@ -1,8 +1,8 @@
 //! What the three local planners share: refusals, the order of bisection, bounds of a finger's motion.
 
 use regrasp_api::{
-    CallError, Configuration, Context, FingerIndex, FingerJoints, Hand, JointKind, Random, Reached, Reason,
-    Resolution, Slot,
+    CallError, Configuration, Contact, Context, FingerIndex, FingerJoints, Hand, JointKind, Random, Reached,
+    Reason, Resolution, Slot, SurfaceParam,
 };
 
 /// The answer of a planner that goes nowhere: the refusal is counted, the end is where it began.
@@ -15,6 +15,21 @@ pub(crate) fn refuse(slot: Slot, reason: Reason, from: &Configuration, context: 
 pub(crate) fn wrong_target(plugin: &str, slot: Slot) -> CallError {
     let reason = format!("it connects targets of the slot `{}` only", slot.name());
     CallError::Unsupported { plugin: plugin.into(), reason }
+}
+
+/// How far (m) a fingertip is taken off the object to find a second place that it nearly touches.
+///
+/// Off an edge whose facets' normals differ by θ, a second place comes closest if its gap is below 1 mm · (1 - cos θ): for each jump of
+/// the contact over more than a plan's closure the fingertip then is some micrometres to the side of where it would happen, which is what
+/// motions between two states stray. Our choice.
+const OFF: f64 = 1e-3;
+
+/// Whether a fingertip's ball of `radius` (m) touches here alone. In a hollow it may touch at two places, or nearly; then which of the two is the
+/// contact is a matter of rounding, and the contact may jump from one to the other.
+/// Two places closer together than half of `closure` (m) are one.
+pub(crate) fn touches_once(surface: &dyn SurfaceParam, contact: &Contact, radius: f64, closure: f64) -> bool {
+    let off = surface.project(&contact.tip_center(radius + OFF), Some(contact.facet)).contact;
+    (off.p_OC - contact.p_OC).norm() <= 0.5 * closure
 }
 
 /// One index of a bisection, between two that came before it.
@@ -124,6 +139,28 @@ pub(crate) fn with_spare(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use regrasp_api::{Primitive, Vec3};
+    use regrasp_surfaces::geodesic::{Geodesic, GeodesicSettings};
+    use regrasp_world::primitive_mesh;
+
+    /// On a ring's inner side the ball touches two facets where it is just between them, and one a tenth of a millimetre beside.
+    #[test]
+    fn between_two_facets_of_a_hollow_a_ball_touches_twice() {
+        const RADIUS: f64 = 0.01;
+        let ring = Primitive::Torus { ring_radius: 0.0286, tube_radius: 0.008 };
+        let mesh = primitive_mesh(&ring, 1280).unwrap();
+        let surface = Geodesic::new(&GeodesicSettings::default(), &mesh, RADIUS).unwrap();
+        let contact = |beside: f64| {
+            let mut p_OF = Vec3::new(0.0105, beside, 0.0);
+            for _ in 0..50 {
+                p_OF.x += surface.project(&p_OF, None).distance - RADIUS;
+            }
+            surface.project(&p_OF, None).contact
+        };
+        let once = |contact: &Contact| touches_once(&surface, contact, RADIUS, 20e-6);
+        assert!(!once(&contact(0.0)) && !once(&contact(2e-6)));
+        assert!(once(&contact(1e-4)) && once(&contact(1e-3)));
+    }
 
     #[test]
     fn bisection_meets_every_index_once_between_known_ones() {

@@ -4,7 +4,7 @@ mod flight;
 mod follow;
 mod lift;
 
-use crate::common::{Levers, refuse, wrong_target};
+use crate::common::{Levers, refuse, touches_once, wrong_target};
 pub(crate) use flight::Flight;
 use regrasp_api::{
     CallError, Configuration, Contact, Context, FingerIndex, FingerJoints, Hint, Path, Reached, Reason, Slot,
@@ -206,7 +206,8 @@ fn unfit(flight: &Flight<'_>, target: End<'_>) -> Option<Reason> {
     if let Some(contact) = target.contact {
         rule = TipRule::Touches;
         let gap = task.hand.tip_center(*finger, target.joints) - flight.center(contact, 0.0);
-        if gap.norm() > 0.5 * task.tolerances.closure {
+        let (radius, closure) = (task.hand.fingertip_radius(), task.tolerances.closure);
+        if gap.norm() > 0.5 * closure || !touches_once(task.surface, contact, radius, closure) {
             return Some(Reason::Closure);
         }
     }

@@ -1,6 +1,7 @@
 //! Whether a contact jumps, as it does where the fingertip leaves one facet of a concave edge for the other.
 
 use super::step::Roller;
+use crate::common::touches_once;
 use regrasp_api::{Contact, Mesh, Vec3};
 
 /// Halvings of a step after which a jump would be shorter than what the closure bound lets pass.
@@ -17,6 +18,11 @@ impl Roller<'_> {
         let project = |p_OF: &Vec3, near: u32| self.task.surface.project(p_OF, Some(near)).contact;
         let watch = Watch { project: &project, radius: self.radius, closure: self.closure };
         !self.is_convex && watch.jumps(a, b, MOST_HALVINGS)
+    }
+
+    /// Whether the fingertip touches here alone; between two states it may stray to what it nearly touches.
+    pub fn touches_once(&self, contact: &Contact) -> bool {
+        self.is_convex || touches_once(self.task.surface, contact, self.radius, self.task.tolerances.closure)
     }
 }
 

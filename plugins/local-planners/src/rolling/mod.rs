@@ -58,7 +58,7 @@ impl Settings for RollingSettings {
 ///
 /// Stops at the last valid state: at a joint's limit, out of reach or at a singularity (`reach`), at a collision, where the grasp is no
 /// longer stable, where net slip at a state uses up its share (within a step the tip may stray along the surface by as much as closure
-/// allows across it), and where a contact is lost or jumps on a concave edge (`closure`).
+/// allows across it), and where a contact is lost, jumps on a concave edge, or nearly touches at a second place (`closure`).
 #[derive(Clone, Debug)]
 pub struct Rolling {
     settings: RollingSettings,

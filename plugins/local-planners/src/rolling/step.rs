@@ -154,7 +154,7 @@ impl Roller<'_> {
         }
         let p_HF = to_hand(&state.q.X_HO, &contact.tip_center(self.radius)) + velocity(&tip, &rate) * h;
         let end = surface.project(&to_object(X_HEnd, &p_HF), Some(touch.facet)).contact;
-        if self.jumps(&contact, &touch) || self.jumps(&touch, &end) {
+        if self.jumps(&contact, &touch) || self.jumps(&touch, &end) || !self.touches_once(&end) {
             return Err(Failure::Stop(Reason::Closure));
         }
         let p_HF = to_hand(X_HEnd, &end.tip_center(self.radius));
