@@ -4,36 +4,11 @@
 //!
 //! A finger that holds the object has a dark tip, a lifted one a red tip. The cross painted on the object shows how it turns.
 
-use regrasp::study::picture::{Bounds, Picture, STYLE, Scene};
+use regrasp::study::picture::{Picture, Scene, sheet};
 use std::error::Error;
-use std::fmt::Write;
 
-/// Frames side by side, and rows of them.
-const GRID: (usize, usize) = (4, 2);
-/// Room about and above a frame (mm).
-const ROOM: (f64, f64) = (10.0, 16.0);
-
-/// The frames with their times as one picture.
-fn strip(frames: &[(Picture, f64)]) -> Result<String, std::fmt::Error> {
-    let bounds = frames.iter().fold(Bounds::NOTHING, |all, (picture, _)| all.union(picture.bounds()));
-    let (width, height) = (bounds.size()[0] + 2.0 * ROOM.0, bounds.size()[1] + ROOM.0 + ROOM.1);
-    let (all_width, all_height) = (GRID.0 as f64 * width, GRID.1 as f64 * height);
-    let mut text = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {all_width:.0} {all_height:.0}\">\n<style>{STYLE}</style>\n"
-    );
-    writeln!(text, "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>")?;
-    for (k, (picture, time)) in frames.iter().enumerate() {
-        let (left, top) = ((k % GRID.0) as f64 * width, (k / GRID.0) as f64 * height);
-        let (x, y) = (left + ROOM.0 - bounds.low[0], top + ROOM.1 - bounds.low[1]);
-        writeln!(text, "<g transform=\"translate({x:.1} {y:.1})\">\n{}</g>", picture.elements())?;
-        let (x, y) = (left + width / 2.0, top + 12.0);
-        writeln!(
-            text,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-family=\"sans-serif\" font-size=\"9\" text-anchor=\"middle\">{time:.1} s</text>"
-        )?;
-    }
-    Ok(text + "</svg>\n")
-}
+/// How many frames, and how many side by side.
+const FRAMES: (usize, usize) = (8, 4);
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
@@ -48,10 +23,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let (hand, obstacles) = (scenario.hand.as_ref(), scenario.problem.obstacle.as_slice());
     let scene = Scene { hand, mesh: &scenario.object.mesh, obstacles };
-    let count = GRID.0 * GRID.1;
+    let (count, columns) = FRAMES;
     let at = |k: usize| states[k * last / (count - 1)];
-    let frames: Vec<_> = (0..count).map(at).map(|(q, time)| (Picture::of(&scene, q), *time)).collect();
-    std::fs::write(&file, strip(&frames)?)?;
+    let frame = |(q, time): (_, &f64)| (Picture::of(&scene, q), format!("{time:.1} s"));
+    std::fs::write(&file, sheet(&(0..count).map(at).map(frame).collect::<Vec<_>>(), columns))?;
     println!("{file}: {count} frames of a motion of {:.1} s", states[last].1);
     Ok(())
 }

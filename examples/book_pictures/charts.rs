@@ -89,8 +89,8 @@ pub fn offset(example: &Example<'_>) -> Result<String, Box<dyn Error>> {
     if !example.setup.plugins().surface.geodesic(&from, &to, &mut way, &mut Context::seeded(0))? {
         return Err("the faces are not joined".into());
     }
-    let px = |p: &Vec3| (150.0 + 5e3 * p.x, 215.0 - 5e3 * p.y);
-    let mut text = paper(420.0, 345.0);
+    let px = |p: &Vec3| (260.0 + 5e3 * p.x, 215.0 - 5e3 * p.y);
+    let mut text = paper(640.0, 345.0);
     let corners =
         [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| px(&Vec3::new(x, y, 0.0)));
     writeln!(
@@ -121,9 +121,9 @@ pub fn offset(example: &Example<'_>) -> Result<String, Box<dyn Error>> {
         &moments.iter().map(|contact| px(&contact.p_OC)).collect::<Vec<_>>(),
         "stroke=\"#b3261e\" stroke-width=\"2.5\"",
     );
-    word(&mut text, (150.0, 220.0), "middle", "cube");
-    word(&mut text, (290.0, 55.0), "start", "fingertip's centre");
-    word(&mut text, (150.0, 120.0), "middle", "contact");
+    word(&mut text, (260.0, 220.0), "middle", "cube");
+    word(&mut text, (400.0, 55.0), "start", "fingertip's centre");
+    word(&mut text, (260.0, 120.0), "middle", "contact");
     Ok(text + "</svg>\n")
 }
 

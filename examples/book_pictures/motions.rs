@@ -124,7 +124,7 @@ pub fn liftable(example: &Example<'_>) -> Drawn {
         let verdict = if low > 0.0 { format!("{low:.3} to {high:.3}") } else { "not stable".into() };
         frames.push((picture, format!("{who}: {verdict}")));
     }
-    Ok(sheet(&frames, 5))
+    Ok(sheet(&frames, 3))
 }
 
 /// Two nodes that a path in GS_n joins: the contacts slide along it (above); rolled over the same way, they go elsewhere (below).

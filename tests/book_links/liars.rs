@@ -1,6 +1,7 @@
 //! Small books with one fault each.
 
 use crate::commands::{Help, faults as command_faults};
+use crate::scenarios::faults as scenario_faults;
 use crate::tree::Tree;
 use std::fs;
 use std::path::Path;
@@ -13,13 +14,15 @@ const GOOD: &[(&str, &str)] = &[
     (
         "book/src/one.md",
         "# One\n\n## First steps\n\n## First steps\n\n[two](deep/two.md#the---option-of-plan-x) [again](#first-steps-1) \
-         [by hand](deep/two.md#by-hand)\n\n```\n$ regrasp plan ball --seed 7 -o x.json && regrasp verify x.json\n```\n",
+         [by hand](deep/two.md#by-hand) [by name](deep/two.md#second)\n\n```\n$ regrasp plan ball --seed 7 -o x.json && regrasp verify x.json\n```\n",
     ),
     (
         "book/src/deep/two.md",
-        "# Two\n\n## The `--option` of plan (x)\n\n<a id=\"by-hand\"></a>\n\n![ball](../ball.svg)\n\n```rust\n\
+        "# Two {#second}\n\n## The `--option` of plan (x)\n\n<a id=\"by-hand\"></a>\n\n![ball](../ball.svg)\n\n```rust\n\
          {{#include ../../../code.rs:shown}}\n{{#include ../../../code.rs:1:2}}\n```\n\n\
-         ```\n$ regrasp plan ball \\\n      --set a.b=-1 --seed=3 > log   # no --such option\n```\n\n[out](https://example.org/x#y)\n",
+         ```\n$ regrasp plan ball \\\n      --set a.b=-1 --seed=3 > log   # no --such option\n```\n\n[out](https://example.org/x#y)\n\n\
+         ```toml\n[object]\nfriction = 0.5\nshape = { kind = \"cuboid\", size = [0.04, 0.04, 0.04] }\n```\n\n\
+         ```toml\n[hand]\nurdf = \"mine.urdf\"\n```\n",
     ),
     ("book/src/ball.svg", "<svg/>"),
 ];
@@ -42,6 +45,7 @@ fn faults(change: impl FnOnce(&Path)) -> Vec<String> {
     let tree = Tree::read(folder.path(), &["README.md"]);
     let mut faults = tree.faults();
     faults.extend(command_faults(&tree, &help()));
+    faults.extend(scenario_faults(&tree));
     faults
 }
 
@@ -130,4 +134,13 @@ fn commands_and_options_that_do_not_exist_are_found() {
     assert!(liar("book/src/one.md", "--seed", "--speed").ends_with("it has no option `--speed`"));
     assert!(liar("book/src/one.md", "verify x.json", "verify --seed 1 x.json").contains("`regrasp verify"));
     assert!(liar("book/src/deep/two.md", "--set", "--sett").ends_with("it has no option `--sett`"));
+}
+
+#[test]
+fn pieces_of_scenarios_that_are_none_are_found() {
+    assert!(liar("book/src/deep/two.md", "friction = 0.5", "friction : 0.5").contains("not TOML"));
+    assert!(
+        liar("book/src/deep/two.md", "friction = 0.5", "fricton = 0.5").contains("did you mean `friction`")
+    );
+    assert!(liar("book/src/deep/two.md", "friction = 0.5", "friction = -0.5").contains("outside"));
 }

@@ -1,11 +1,12 @@
 //! The book holds together: its links, anchors, pictures and included code exist, its table of contents is complete, and the commands that it
-//! shows are commands of the program.
+//! shows are commands of the program, its pieces of scenarios pieces of scenarios.
 //!
 //! Each check has a liar: a small book with that one fault.
 
 mod commands;
 mod liars;
 mod markdown;
+mod scenarios;
 mod tree;
 
 use std::path::Path;
@@ -20,5 +21,6 @@ fn the_book_and_the_documents_beside_it_hold_together() {
     assert!(tree.pages.len() > 20, "only {} pages were found", tree.pages.len());
     let mut faults = tree.faults();
     faults.extend(commands::faults(&tree, &commands::Help::of_the_program()));
+    faults.extend(scenarios::faults(&tree));
     assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
 }

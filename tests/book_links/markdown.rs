@@ -10,16 +10,18 @@ pub struct Page {
     pub links: Vec<(usize, String)>,
     /// What a link to this page may name after `#`.
     pub anchors: BTreeSet<String>,
-    /// The code blocks with the line they begin in.
+    /// The code blocks of a terminal, with the line they begin in.
     pub blocks: Vec<(usize, String)>,
+    /// The code blocks in TOML, likewise.
+    pub tables: Vec<(usize, String)>,
     /// What `{{#include …}}` names, with the line it stands in.
     pub includes: Vec<(usize, String)>,
 }
 
 impl Page {
     pub fn read(text: &str) -> Self {
-        let mut page = Self { includes: includes(text), ..Self::default() };
-        let line = |at: usize| 1 + text[..at].matches('\n').count();
+        let mut reader =
+            Reader { page: Self { includes: includes(text), ..Self::default() }, ..Reader::default() };
         let options = Options::ENABLE_TABLES
             | Options::ENABLE_FOOTNOTES
             | Options::ENABLE_STRIKETHROUGH
@@ -28,41 +30,11 @@ impl Page {
             | Options::ENABLE_SMART_PUNCTUATION
             | Options::ENABLE_DEFINITION_LIST
             | Options::ENABLE_GFM;
-        let (mut heading, mut block): (Option<String>, Option<(usize, String)>) = (None, None);
         for (event, range) in Parser::new_ext(text, options).into_offset_iter() {
-            match event {
-                Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => {
-                    page.links.push((line(range.start), dest_url.into_string()));
-                }
-                Event::Start(Tag::Heading { id, .. }) => {
-                    heading = Some(String::new());
-                    page.anchors.extend(id.map(|id| id.into_string()));
-                }
-                Event::End(TagEnd::Heading(_)) => page.add_heading(&heading.take().unwrap_or_default()),
-                Event::Start(Tag::CodeBlock(kind)) => {
-                    let is_shell = match kind {
-                        CodeBlockKind::Fenced(language) => {
-                            ["", "sh", "console", "text"].contains(&&*language)
-                        }
-                        CodeBlockKind::Indented => true,
-                    };
-                    block = is_shell.then(|| (line(range.start), String::new()));
-                }
-                Event::End(TagEnd::CodeBlock) => page.blocks.extend(block.take()),
-                Event::Text(words) => {
-                    heading.iter_mut().for_each(|heading| heading.push_str(&words));
-                    block.iter_mut().for_each(|(_, block)| block.push_str(&words));
-                }
-                Event::Code(words) => heading.iter_mut().for_each(|heading| heading.push_str(&words)),
-                Event::Html(html) | Event::InlineHtml(html) => {
-                    let links = ["href", "src"].iter().flat_map(|name| attributes(&html, name));
-                    page.links.extend(links.map(|link| (line(range.start), link)));
-                    page.anchors.extend(attributes(&html, "id"));
-                }
-                _ => {}
-            }
+            reader.line = 1 + text[..range.start].matches('\n').count();
+            reader.take(event);
         }
-        page
+        reader.page
     }
 
     /// mdBook's rule: letters, digits, `_` and `-` are kept, spaces become `-`, and what was there before gets a number.
@@ -78,6 +50,60 @@ impl Page {
                 (1..).map(|k| format!("{id}-{k}")).find(|numbered| !self.anchors.contains(numbered));
             self.anchors.extend(numbered);
         }
+    }
+}
+
+/// A page while it is read.
+#[derive(Default)]
+struct Reader {
+    page: Page,
+    line: usize,
+    /// The heading that is being read, without an id of its own.
+    heading: Option<String>,
+    /// The code block that is being read, its line and whether it is TOML.
+    block: Option<(usize, String, bool)>,
+}
+
+impl Reader {
+    fn take(&mut self, event: Event<'_>) {
+        match event {
+            Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => {
+                self.page.links.push((self.line, dest_url.into_string()));
+            }
+            Event::Start(Tag::Heading { id: Some(id), .. }) => {
+                self.page.anchors.insert(id.into_string());
+            }
+            Event::Start(Tag::Heading { id: None, .. }) => self.heading = Some(String::new()),
+            Event::End(TagEnd::Heading(_)) => {
+                self.heading.take().iter().for_each(|heading| self.page.add_heading(heading));
+            }
+            Event::Start(Tag::CodeBlock(kind)) => self.begin_block(&kind),
+            Event::End(TagEnd::CodeBlock) => {
+                if let Some((line, text, is_toml)) = self.block.take() {
+                    let blocks = if is_toml { &mut self.page.tables } else { &mut self.page.blocks };
+                    blocks.push((line, text));
+                }
+            }
+            Event::Text(words) | Event::Code(words) => {
+                self.heading.iter_mut().for_each(|heading| heading.push_str(&words));
+                self.block.iter_mut().for_each(|(_, block, _)| block.push_str(&words));
+            }
+            Event::Html(html) | Event::InlineHtml(html) => {
+                let links = ["href", "src"].iter().flat_map(|name| attributes(&html, name));
+                self.page.links.extend(links.map(|link| (self.line, link)));
+                self.page.anchors.extend(attributes(&html, "id"));
+            }
+            _ => {}
+        }
+    }
+
+    fn begin_block(&mut self, kind: &CodeBlockKind<'_>) {
+        let language = match kind {
+            CodeBlockKind::Fenced(language) => language.as_ref(),
+            CodeBlockKind::Indented => "",
+        };
+        let is_wanted = ["", "sh", "console", "text", "toml"].contains(&language);
+        self.block = is_wanted.then(|| (self.line, String::new(), language == "toml"));
     }
 }
 
