@@ -1,5 +1,6 @@
 //! The command line's form.
 
+use crate::numbers::{seconds, whole};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -37,6 +38,7 @@ pub enum Command {
 /// Plan a scenario, verify the plan, and write it to a file.
 #[derive(Debug, Args)]
 #[command(after_help = "\
+`regrasp scenarios` lists the built-in scenarios, `regrasp plugins` the slots, their plugins and settings.\n\n\
 Ctrl-C and the time limit end the search and keep what was found: with `-o plan.json`, a motion that reaches some of the goals and \
 verifies goes to `plan.partial.json`. A plan that does not verify is never written under the wished name but to `plan.rejected.json`.\n\n\
 Examples:\n  regrasp plan sphere\n  regrasp plan my-problem.toml --seed 7 -o plan.json\n  \
@@ -45,7 +47,7 @@ pub struct PlanArgs {
     /// A scenario file, or the name of a built-in scenario.
     pub scenario: String,
     /// Seed of all random choices: the same seed gives the same plan, on any number of threads.
-    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = whole_number)]
+    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub seed: u64,
     /// Fill a slot with another plugin; can be repeated.
     #[arg(long = "use", value_name = "SLOT=ID")]
@@ -59,10 +61,10 @@ pub struct PlanArgs {
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     pub time_limit: Option<f64>,
     /// Generate at most this many nodes for each goal.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 1, 10_000_000>)]
     pub max_nodes: Option<u64>,
     /// Compute with this many threads.
-    #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16, 1, 256>)]
     pub threads: u16,
     /// Write the plan to this file.
     #[arg(short, long, value_name = "FILE")]
@@ -168,17 +170,6 @@ pub enum Kind {
     Study,
 }
 
-fn whole_number(text: &str) -> Result<u64, String> {
-    text.parse().map_err(|_| format!("it must be a whole number in 0..={}", u64::MAX))
-}
-
-pub fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if (0.001..=1e7).contains(&seconds) => Ok(seconds),
-        _ => Err("it must be a number of seconds in 0.001..=10000000".into()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -187,13 +178,5 @@ mod tests {
     fn the_form_is_consistent() {
         use clap::CommandFactory;
         Arguments::command().debug_assert();
-    }
-
-    #[test]
-    fn seconds_are_positive_and_finite() {
-        assert_eq!(seconds("1.5"), Ok(1.5));
-        for bad in ["0", "-1", "nan", "inf", "soon"] {
-            assert!(seconds(bad).is_err(), "{bad}");
-        }
     }
 }

@@ -1,5 +1,6 @@
 //! `regrasp hand`: how a URDF is understood, and the hand file that it becomes.
 
+use crate::numbers::whole;
 use crate::table::Table;
 use crate::{Failure, say, say_json};
 use clap::Args;
@@ -37,14 +38,14 @@ pub struct HandArgs {
     /// A folder that holds packages of `package://` paths; can be repeated.
     #[arg(long, value_name = "DIR")]
     pub packages: Vec<PathBuf>,
-    /// Take each mesh apart into at most this many convex pieces; by default its convex hull is used.
-    #[arg(long, value_name = "N")]
+    /// Take each mesh apart into at most this many convex pieces, 1 to 64; by default its convex hull is used.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<usize, 1, 64>)]
     pub mesh_pieces: Option<usize>,
     /// Largest acceleration of every joint (rad/s²); by default what the URDF says, or else 20.
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     pub acceleration: Option<f64>,
     /// Propose a position for a ball of this radius (m).
-    #[arg(long, value_name = "M", default_value_t = 0.03, value_parser = radius)]
+    #[arg(long, value_name = "M", default_value_t = 0.03, allow_negative_numbers = true, value_parser = radius)]
     pub ball: f64,
     /// Write the hand file, with all meshes in it.
     #[arg(short, long, value_name = "FILE")]

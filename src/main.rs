@@ -11,6 +11,7 @@ mod grasps;
 mod hand;
 mod man;
 mod new_plugin;
+mod numbers;
 mod overrides;
 mod plan;
 mod plugins;

@@ -30,8 +30,10 @@ pub fn limit_nodes(scenario: &mut Scenario, max_nodes: Option<u64>) {
 }
 
 fn use_plugin(choices: &mut Choices, text: &str) -> Result<(), Failure> {
-    let Some((slot, id)) = text.split_once('=') else {
-        return Err(Failure::bad_input(format!("`--use {text}` is not of the form SLOT=ID")));
+    let parts = text.split_once('=').filter(|(slot, id)| !slot.is_empty() && !id.is_empty());
+    let Some((slot, id)) = parts else {
+        let example = "such as sampler=rlg; `regrasp plugins` lists both";
+        return Err(Failure::bad_input(format!("`--use {text}` is not of the form SLOT=ID, {example}")));
     };
     let slot = slot_by_name(slot).map_err(|error| refuse("use", text, &error))?;
     choices.use_plugin(slot, id);
@@ -39,8 +41,11 @@ fn use_plugin(choices: &mut Choices, text: &str) -> Result<(), Failure> {
 }
 
 fn set(choices: &mut Choices, text: &str) -> Result<(), Failure> {
-    let form = || Failure::bad_input(format!("`--set {text}` is not of the form SLOT.KEY=VALUE"));
-    let (path, value) = text.split_once('=').ok_or_else(form)?;
+    let form = || {
+        let example = "such as sampler.poses=200; `regrasp plugins ID` lists the keys";
+        Failure::bad_input(format!("`--set {text}` is not of the form SLOT.KEY=VALUE, {example}"))
+    };
+    let (path, value) = text.split_once('=').filter(|(_, value)| !value.is_empty()).ok_or_else(form)?;
     let (slot, key) = split_slot(path).map_err(|error| refuse("set", text, &error))?.ok_or_else(form)?;
     let value = parse(value).map_err(|reason| Failure::bad_input(format!("`--set {text}`: {reason}")))?;
     choices.set(slot, key, value);

@@ -25,19 +25,19 @@ pub struct ReplayArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Multiply the simulated friction by this, 0 to 10; the forces are chosen for the plan's own.
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number::<0, 10>)]
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0, value_parser = number::<0, 10>)]
     pub friction_scale: f64,
     /// Multiply the simulated mass by this, up to 1000; the forces are chosen for the plan's own.
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number::<0, 1000>)]
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0, value_parser = number::<0, 1000>)]
     pub mass_scale: f64,
     /// Multiply the motors' stiffness by this, up to 1000; at 1 it is 10 N·m/rad, or 1000 N/m in prismatic joints.
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number::<0, 1000>)]
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0, value_parser = number::<0, 1000>)]
     pub stiffness_scale: f64,
     /// Multiply the plan's times by this, 0.1 to 100: plans are as fast as the joints can be, and grips balance the weight alone.
-    #[arg(long, value_name = "X", default_value_t = 2.0, value_parser = number::<0, 100>)]
+    #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 2.0, value_parser = number::<0, 100>)]
     pub slowdown: f64,
     /// Most normal force of one contact (N); by default the greater of 2 N and three times the object's weight.
-    #[arg(long, value_name = "N", value_parser = number::<0, 10_000>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = number::<0, 10_000>)]
     pub grip: Option<f64>,
     /// Gravity in the hand's frame (m/s²), such as 0,0,9.81; by default the scenario's.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]

@@ -1,6 +1,7 @@
 //! The form of `regrasp compare`.
 
-use crate::args::{LibraryArgs, seconds};
+use crate::args::LibraryArgs;
+use crate::numbers::{seconds, whole};
 use clap::Args;
 use regrasp::study::compare::{MOST_SEEDS, Shard, Suite};
 use std::path::PathBuf;
@@ -8,6 +9,7 @@ use std::path::PathBuf;
 /// Compare combinations of plugins: every scenario, planned by every variant with every seed, every plan verified.
 #[derive(Debug, Args)]
 #[command(after_help = "\
+`regrasp scenarios` lists the built-in scenarios, `regrasp plugins` the slots, their plugins and settings.\n\n\
 Each `--vary` names plugins of one slot, or values of one setting; all combinations are compared, and the one of the first names is the \
 baseline. Runs are made in parallel, each on one thread. Ctrl-C, or even a kill, keeps what is finished: the same command goes on from there \
 and makes no run again. A run that fails, panics or takes too long is a row of the study, not its end.\n\n\
@@ -33,10 +35,10 @@ pub struct CompareArgs {
     #[arg(long, value_name = "SLOT[.KEY]=A,B…")]
     pub vary: Vec<String>,
     /// Plan each problem with this many seeds [default: 20].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=MOST_SEEDS))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 1, MOST_SEEDS>)]
     pub seeds: Option<u64>,
     /// The first of the seeds [default: 0].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=u64::MAX - MOST_SEEDS))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 0, { u64::MAX - MOST_SEEDS }>)]
     pub first_seed: Option<u64>,
     /// Fill a slot of all variants with another plugin; can be repeated.
     #[arg(long = "use", value_name = "SLOT=ID")]
@@ -50,10 +52,10 @@ pub struct CompareArgs {
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     pub time_limit: Option<f64>,
     /// Generate at most this many nodes for each goal.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 1, 10_000_000>)]
     pub max_nodes: Option<u64>,
     /// Make this many runs at once, each on one thread [default: one for each core].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16, 1, 1024>)]
     pub threads: Option<u16>,
     /// Leave out scenarios that a variant's plugins do not support, instead of refusing the study.
     #[arg(long)]

@@ -10,7 +10,9 @@ use serde_json::{Map, Value};
 /// The levels of `SLOT=ID,ID…` or `SLOT.KEY=VALUE,VALUE…`.
 pub fn factor(text: &str, registry: &Registry) -> Result<Vec<Change>, Failure> {
     let form = || {
-        Failure::bad_input(format!("`--vary {text}` is not of the form SLOT=ID,ID… or SLOT.KEY=VALUE,VALUE…"))
+        Failure::bad_input(format!(
+            "`--vary {text}` is not of the form SLOT=ID,ID… or SLOT.KEY=VALUE,VALUE…, such as sampler=rlg,projection"
+        ))
     };
     let (path, list) = text.split_once('=').ok_or_else(form)?;
     let setting = Slot::ALL.iter().all(|slot| slot.name() != path);

@@ -36,8 +36,8 @@ struct Moment {
 /// Reads where a simulation of `plan` took the object.
 pub fn read(path: &Path, plan: &Plan) -> Result<ReplayTrack, Failure> {
     let refuse = |reason: String| Failure::bad_input(format!("`{}` {reason}", path.display()));
-    let bytes = std::fs::read(path).map_err(|error| refuse(format!("cannot be read: {}", error.kind())))?;
     let made = "; `regrasp replay PLAN -o FILE` makes one";
+    let bytes = std::fs::read(path).map_err(|error| refuse(format!("cannot be read: {error}{made}")))?;
     let replay: Replay = serde_json::from_slice(&bytes)
         .map_err(|error| refuse(format!("is not a file of `regrasp replay`: {error}{made}")))?;
     track(&replay, plan).map_err(|reason| refuse(format!("{reason}{made}")))

@@ -5,3 +5,4 @@ mod command_line;
 mod compare;
 mod desk;
 mod golden;
+mod wording;

@@ -234,7 +234,10 @@ fn shown(value: &Value) -> String {
         Value::Object(_) => "a table".into(),
         Value::Array(_) => "a list".into(),
         // As a person writes it: 5, not 5.0.
-        Value::Number(number) if number.is_f64() => number.as_f64().map_or(String::new(), |x| x.to_string()),
+        Value::Number(number) if number.is_f64() => match number.as_f64().unwrap_or_default() {
+            large if large.abs() >= 1e16 => format!("{large:e}"),
+            number => number.to_string(),
+        },
         other => other.to_string(),
     }
 }

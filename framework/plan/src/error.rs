@@ -21,6 +21,18 @@ pub enum ReadError {
         /// Why.
         source: io::Error,
     },
+    /// The path is a folder.
+    #[error("`{}` is a folder; give the plan file in it", path.display())]
+    IsFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The file is empty.
+    #[error("`{}` is empty; `plan SCENARIO -o PLAN` makes a plan file", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
     /// The text ends in the middle.
     #[error(
         "`{}` is truncated: it ends in line {line}, in the middle of the plan; copy it again or make it anew", path.display()
@@ -32,7 +44,15 @@ pub enum ReadError {
         line: usize,
     },
     /// Not JSON.
-    #[error("`{}` is not JSON: {message}; a plan file is made by `plan SCENARIO -o PLAN`", path.display())]
+    #[error(
+        "`{}` is not JSON: {message}; {}",
+        path.display(),
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            "of a scenario, `plan SCENARIO -o PLAN` makes a plan file"
+        } else {
+            "a plan file is made by `plan SCENARIO -o PLAN`"
+        }
+    )]
     Syntax {
         /// The file.
         path: PathBuf,

@@ -19,12 +19,20 @@ pub fn read(path: &Path) -> Result<Plan, ReadError> {
     match std::fs::read(path) {
         Ok(bytes) => from_json(&bytes, path),
         Err(error) if error.kind() == ErrorKind::NotFound => Err(ReadError::Missing { path: owned() }),
+        Err(error) if error.kind() == ErrorKind::IsADirectory => Err(ReadError::IsFolder { path: owned() }),
         Err(source) => Err(ReadError::Unreadable { path: owned(), source }),
     }
 }
 
 /// Reads a plan from JSON text; `path` is what errors call it.
 pub fn from_json(bytes: &[u8], path: &Path) -> Result<Plan, ReadError> {
+    if bytes.trim_ascii().is_empty() {
+        return Err(ReadError::Empty { path: path.to_owned() });
+    }
+    // serde would read a list as the fields in their order.
+    if bytes.trim_ascii_start().starts_with(b"[") {
+        return Err(ReadError::Format { path: path.to_owned(), found: "missing".into() });
+    }
     let header: Header = serde_json::from_slice(bytes).map_err(|error| header_error(&error, path))?;
     let found = |value: Option<Value>| value.map_or("missing".into(), |value| short(&value));
     if header.format.as_ref().and_then(Value::as_str) != Some("regrasp-plan") {

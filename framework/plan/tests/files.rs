@@ -92,10 +92,11 @@ fn every_bad_file_is_refused_with_the_file_and_what_to_do() {
         let message = parse(text).unwrap_err().to_string();
         assert!(message.contains("p.json") && message.contains(part), "{message}");
     };
-    check("", "truncated");
+    check("", "is empty");
+    check(" \n", "is empty");
     check(&good[..good.len() / 2], "truncated");
     check("PNG", "is not JSON");
-    check("[1, 2]", "not a plan file");
+    check("[1, 2]", "`format` is missing");
     check("{}", "`format` is missing");
     check("{\"format\": \"other\"}", "`format` is \"other\"");
     check(
@@ -108,7 +109,7 @@ fn every_bad_file_is_refused_with_the_file_and_what_to_do() {
     let missing = read(Path::new("no-such-folder/p.json")).unwrap_err().to_string();
     assert!(missing.contains("does not exist"), "{missing}");
     let folder = tempfile::tempdir().unwrap();
-    assert!(matches!(read(folder.path()), Err(ReadError::Unreadable { .. })));
+    assert!(matches!(read(folder.path()), Err(ReadError::IsFolder { .. })));
 }
 
 #[test]

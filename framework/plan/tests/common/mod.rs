@@ -110,7 +110,8 @@ pub fn walk(seed: u64, fingers: usize, states: usize) -> Motion {
 
 /// A plan about a ball, with the given motion.
 pub fn plan(motion: &Motion, hand: &dyn Hand) -> Plan {
-    let joint = serde_json::json!({"name": "j", "kind": "prismatic", "axis": [1, 0, 0], "lower": -1, "upper": 1});
+    let joint =
+        serde_json::json!({"name": "j", "kind": "prismatic", "axis": [1, 0, 0], "lower": -1, "upper": 1});
     let finger = serde_json::json!({"name": "tip", "joint": [joint, joint, joint], "rest": [0, 0, 0]});
     let problem = serde_json::json!({
         "hand": {"name": "tips", "fingertip_radius": 0.01, "finger": vec![finger; hand.finger_count()]},

@@ -27,6 +27,10 @@ impl Folder {
     ///
     /// A folder that holds another study, or something else, is refused.
     pub fn open(path: &Path, study: &mut Study) -> Result<Self, StudyError> {
+        if path.exists() && !path.is_dir() {
+            let reason = "it is a file; give a folder".to_owned();
+            return Err(StudyError::NoStudy { folder: path.to_owned(), reason });
+        }
         fs::create_dir_all(path).map_err(|source| StudyError::Io { path: path.to_owned(), source })?;
         let begun = path.join(STUDY_FILE);
         let refuse = |entry| StudyError::NotEmpty { folder: path.to_owned(), entry };

@@ -17,6 +17,7 @@ pub(crate) use document::{Document, key_path};
 use regrasp_api::{HandDescription, ObjectModel, Problem, Slot};
 use regrasp_host::{Choices, HostError, Registry, Step, near};
 use regrasp_world::{ChainHand, check_problem, check_units, embed_object, embed_obstacles, load_object};
+use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -65,7 +66,13 @@ pub fn load(name: &str, registry: &Registry) -> Result<Scenario, ScenarioError> 
     if !is_path {
         return Err(unknown("scenario", name, SCENARIOS));
     }
-    let text = read(path)?;
+    let text = read(path).map_err(|error| with_hint(error, path))?;
+    // The likeliest mistake: what a plan was made of, and the plan, are easily mixed up.
+    if text.trim_start().starts_with('{') {
+        let cause =
+            "it is JSON, and a scenario is TOML; plan files are for `verify`, `view`, `export` and `replay`";
+        return Err(ScenarioError::Unreadable { place: Place::file(name), cause: cause.into() });
+    }
     from_text(name, &text, path.parent().unwrap_or(Path::new("")), registry)
 }
 
@@ -104,10 +111,27 @@ fn stem(file: &str) -> String {
     Path::new(file).file_stem().map_or(file.into(), |stem| stem.to_string_lossy().into_owned())
 }
 
+/// Says of a scenario file that is not there where to get one.
+fn with_hint(error: ScenarioError, path: &Path) -> ScenarioError {
+    let ScenarioError::Unreadable { place, cause } = error else { return error };
+    if path.exists() {
+        return ScenarioError::Unreadable { place, cause };
+    }
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+    let hint = match find(SCENARIOS, stem) {
+        Some(_) => format!("the built-in scenario is called `{stem}`"),
+        None => "`scenarios sphere` prints a built-in one to start from".to_owned(),
+    };
+    ScenarioError::Unreadable { place, cause: format!("{cause}; {hint}") }
+}
+
 pub(crate) fn read(path: &Path) -> Result<String, ScenarioError> {
     let unreadable =
         |cause: String| ScenarioError::Unreadable { place: Place::file(&path.display().to_string()), cause };
-    let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
+    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+        ErrorKind::IsADirectory => unreadable("it is a folder; name the file in it".into()),
+        _ => unreadable(error.to_string()),
+    })?;
     String::from_utf8(bytes).map_err(|_| unreadable("it is not UTF-8 text".into()))
 }
 

@@ -103,7 +103,13 @@ fn files_that_cannot_be_read_are_named() {
     let message = load(path.to_str().unwrap(), &registry()).err().unwrap().to_string();
     assert_says(&message, &["not UTF-8", "binary.toml"]);
     let message = load(folder.path().to_str().unwrap(), &registry()).err().unwrap().to_string();
-    assert_says(&message, &["cannot read the file"]);
+    assert_says(&message, &["cannot read the file: it is a folder"]);
+    let wrong = load("sphere.toml", &registry()).err().unwrap().to_string();
+    assert_says(&wrong, &["the built-in scenario is called `sphere`"]);
+    let path = folder.path().join("plan.json");
+    fs::write(&path, "{\"format\": \"regrasp-plan\"}").unwrap();
+    let message = load(path.to_str().unwrap(), &registry()).err().unwrap().to_string();
+    assert_says(&message, &["it is JSON, and a scenario is TOML", "`verify`", "plan.json"]);
 }
 
 #[test]
