@@ -23,7 +23,7 @@ pub struct MendSettings {
 
 impl Default for MendSettings {
     fn default() -> Self {
-        Self { explore: 0.2, power: 2.0 }
+        Self { explore: 0.0, power: 2.0 }
     }
 }
 
