@@ -3,10 +3,17 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use regrasp::study::compare::{RunRecord, StudyProgress};
 use std::cell::Cell;
+use std::io::{self, Write};
+use std::time::{Duration, Instant};
 
-/// A line on standard error, if that is a terminal: how many runs are done, and how long the others will take.
+/// Where standard error is no terminal (a job of a cluster, say), a line goes there this often.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// On standard error: how many runs are done, and how long the others will take.
 pub struct Bar {
     bar: ProgressBar,
+    /// When a line was last written where there is no terminal.
+    last: Cell<Instant>,
     /// Runs that found no verified plan.
     failed: Cell<usize>,
 }
@@ -16,11 +23,23 @@ impl Bar {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
         let style = "{bar:30} {pos} of {len} runs, {elapsed} gone, about {eta} left{msg}";
         bar.set_style(ProgressStyle::with_template(style).expect("the template is a constant"));
-        Self { bar, failed: Cell::new(0) }
+        Self { bar, last: Cell::new(Instant::now()), failed: Cell::new(0) }
     }
 
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+
+    /// What the bar would show, as a line of text.
+    fn tell(&self) {
+        if !self.bar.is_hidden() || self.last.get().elapsed() < PATIENCE {
+            return;
+        }
+        self.last.set(Instant::now());
+        let (done, total) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        let (left, failed) = (self.bar.eta().as_secs(), self.bar.message());
+        // A reader of standard error that has gone away is no failure.
+        let _ = writeln!(io::stderr(), "{done} of {total} runs, about {left} s left{failed}");
     }
 }
 
@@ -38,5 +57,6 @@ impl StudyProgress for Bar {
             self.bar.set_message(format!(", {} without a verified plan", self.failed.get()));
         }
         self.bar.inc(1);
+        self.tell();
     }
 }
