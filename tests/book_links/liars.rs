@@ -117,6 +117,13 @@ fn pages_that_are_forgotten_or_named_twice_are_found() {
 }
 
 #[test]
+fn a_first_page_in_a_folder_is_found() {
+    let moved = "- [Two](deep/two.md)\n- [One](one.md)\n";
+    let fault = liar("book/src/SUMMARY.md", "- [One](one.md)\n- [Two](deep/two.md)\n", moved);
+    assert_eq!(fault, "deep/two.md: the first page must lie beside SUMMARY.md");
+}
+
+#[test]
 fn pictures_that_are_missing_or_not_used_are_found() {
     assert_eq!(
         faults(|root| fs::write(root.join("book/src/cube.svg"), "").unwrap()),

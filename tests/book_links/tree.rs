@@ -96,8 +96,8 @@ impl Tree {
         let marked = |mark: &str| {
             text.lines().any(|line| line.split_once(mark).is_some_and(|(_, name)| name.trim() == part))
         };
-        (!is_range && !(marked("ANCHOR:") && marked("ANCHOR_END:")))
-            .then(|| format!("`{target}` is included, but {path} has no `ANCHOR: {part}` with its end"))
+        let found = is_range || marked("ANCHOR:") && marked("ANCHOR_END:");
+        (!found).then(|| format!("`{target}` is included, but {path} has no `ANCHOR: {part}` with its end"))
     }
 
     /// Pages that the table of contents forgets, or names twice.
@@ -113,8 +113,12 @@ impl Tree {
         let pages = self.pages.keys().filter(|page| page.starts_with(BOOK) && **page != summary);
         let forgotten = pages.filter(|page| !named.contains_key(*page));
         let twice = named.iter().filter(|(_, count)| **count > 1);
+        // mdBook copies the first page to index.html as it is: from deeper down its links would miss.
+        let first = contents.links.first().filter(|(_, link)| link.contains('/'));
+        let first = first.map(|(_, link)| format!("{link}: the first page must lie beside SUMMARY.md"));
         let forgotten = forgotten.map(|page| format!("{}: not in SUMMARY.md", page.display()));
-        forgotten.chain(twice.map(|(page, _)| format!("{}: twice in SUMMARY.md", page.display()))).collect()
+        let twice = twice.map(|(page, _)| format!("{}: twice in SUMMARY.md", page.display()));
+        first.into_iter().chain(forgotten).chain(twice).collect()
     }
 }
 

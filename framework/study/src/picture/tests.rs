@@ -62,6 +62,8 @@ fn a_sheet_has_every_picture_with_its_caption() {
         3 * picture(&scenario).elements().matches("rg-link\"").count()
     );
     let size = picture(&scenario).bounds().size();
-    let wanted = format!("viewBox=\"0 0 {:.0} {:.0}\"", 2.0 * (size[0] + 20.0), 2.0 * (size[1] + 26.0));
+    let width = 2.0 * (size[0] + 20.0);
+    // Two rows, each with its captions in letters of 1.8 % of the width.
+    let wanted = format!("viewBox=\"0 0 {width:.0} {:.0}\"", 2.0 * (size[1] + 17.0 + 0.018 * width));
     assert!(text.contains(&wanted), "{wanted}");
 }
