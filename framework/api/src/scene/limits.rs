@@ -71,7 +71,10 @@ pub struct Resolution {
     /// Distance that contacts keep from a sharp edge when they are chosen (m).
     #[schemars(range(min = 0.0, max = 0.1))]
     pub edge_margin: f64,
-    /// What the friction coefficient is multiplied with while planning (no unit), so that transfers keep a margin.
+    /// What the friction coefficient is multiplied with while planning (no unit), so that grasps keep a margin.
+    ///
+    /// The paper counts with all of it. A grasp that closes by the last of the friction alone needs large forces in exact directions, and plans are to be
+    /// carried out: simulated, 48 of 50 plans of `cubic` arrive with 0.8, 30 with 0.95.
     #[schemars(range(min = 0.01, max = 1.0))]
     pub friction_margin: f64,
 }
@@ -89,7 +92,7 @@ impl Default for Resolution {
             retreat: [3e-3, 8e-3],
             clearance: 5e-4,
             edge_margin: 3e-3,
-            friction_margin: 0.95,
+            friction_margin: 0.8,
         }
     }
 }

@@ -12,7 +12,7 @@ const OF_CONTACT: usize = 4;
 /// Maximises the slack t over all forces y with G y = 0, Σ normal = 1 and normal - t ≥ |(tangential, torsional)| for each contact, by Clarabel
 /// (Goulart and Chen, "Clarabel: an interior-point solver for conic programs with quadratic objectives", 2024).
 ///
-/// Returns the forces and t, which still have to be checked; `None` where the solver finds none.
+/// Returns the forces and t, which still have to be checked, whatever the solver thinks of them; `None` where it finds none.
 pub(crate) fn best_forces(contacts: &[Contact]) -> Option<(Forces, f64)> {
     let variables = OF_CONTACT * contacts.len() + 1;
     let tangents: Vec<[Vec3; 2]> = contacts.iter().map(tangents).collect();
@@ -132,7 +132,15 @@ impl Problem {
         let settings = DefaultSettings { verbose: false, ..Default::default() };
         let mut solver = DefaultSolver::new(&P, &q, &A, &self.b, &self.cones, settings).ok()?;
         solver.solve();
-        let good = matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
+        // Where rounding stops the solver short of its own tolerances, its last iterate is nearly the best: the caller checks whatever comes from here.
+        let good = matches!(
+            solver.solution.status,
+            SolverStatus::Solved
+                | SolverStatus::AlmostSolved
+                | SolverStatus::InsufficientProgress
+                | SolverStatus::NumericalError
+                | SolverStatus::MaxIterations
+        );
         (good && solver.solution.x.iter().all(|x| x.is_finite())).then_some(solver.solution.x)
     }
 }
