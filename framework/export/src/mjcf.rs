@@ -6,7 +6,7 @@
 
 use crate::names::{OBJECT, ROOT, file_stem};
 use crate::solid::{Piece, Solid};
-use crate::trajectory::{motors, target, trajectory};
+use crate::trajectory::{controls, motors, target};
 use crate::urdf::{LINK_MASS, stl};
 use crate::xml::{Xml, direction, numbers, position};
 use crate::{File, Scene};
@@ -36,23 +36,29 @@ pub(crate) fn files(scene: &Scene<'_>, stem: &str) -> Vec<File> {
     files.extend(
         assets.meshes.into_iter().map(|(name, mesh)| File { name: format!("{name}.stl"), bytes: stl(&mesh) }),
     );
-    files.push(trajectory(scene, format!("{stem}.controls.csv"), true));
+    files.push(controls(scene, format!("{stem}.controls.csv")));
     files
 }
 
 fn options(xml: &mut Xml, scene: &Scene<'_>) {
-    // Elliptic cones are the plan's own; a high ratio of the constraints' impedances keeps resting contacts from creeping.
-    xml.empty(
-        "option",
-        &[
-            ("timestep", "0.0005".into()),
-            ("integrator", "implicitfast".into()),
-            ("cone", "elliptic".into()),
-            ("impratio", "10".into()),
-            ("gravity", numbers(&scene.plan.scenario.problem.gravity)),
-        ],
-    );
+    // Elliptic cones are the plan's own; a high ratio of the constraints' impedances keeps held objects from creeping out of the grasp.
+    let mut option: Attributes = vec![
+        ("timestep", "0.0005".into()),
+        ("integrator", "implicitfast".into()),
+        ("cone", "elliptic".into()),
+        ("impratio", "100".into()),
+        ("gravity", numbers(&scene.plan.scenario.problem.gravity)),
+    ];
+    if has_torsion(scene) {
+        // MuJoCo softens torsional friction by (mu/gamma)², some 40,000 here: a pinched object would turn out of the fingers. These steps undo that.
+        option.push(("noslip_iterations", "5".into()));
+    }
+    xml.empty("option", &option);
     xml.empty("size", &[("memory", "200M".into())]);
+    // Stiff contacts: by MuJoCo's own defaults fingertips sink in by half a millimetre, and grasps turn by as much and slip.
+    xml.element("default", &[], |xml| {
+        xml.empty("geom", &[("solref", "0.002 1".into()), ("solimp", "0.95 0.99 0.0001 0.5 2".into())]);
+    });
 }
 
 type Attributes = Vec<(&'static str, String)>;
@@ -230,10 +236,14 @@ const HAND: [&str; 2] = ["1", "2"];
 /// ... and of the object.
 const OBJECT_SIDE: [&str; 2] = ["2", "1"];
 
+fn has_torsion(scene: &Scene<'_>) -> bool {
+    scene.plan.claims.contact.cone.is_some_and(|cone| cone.gamma > 0.0)
+}
+
 /// Dimension of contacts, and sliding, torsional (m) and rolling friction: soft fingers carry torques about their normals.
 fn scene_friction(scene: &Scene<'_>) -> [(&'static str, String); 2] {
     let gamma = scene.plan.claims.contact.cone.map_or(0.0, |cone| cone.gamma);
-    let dimension = if gamma > 0.0 { "4" } else { "3" };
+    let dimension = if has_torsion(scene) { "4" } else { "3" };
     [("condim", dimension.into()), ("friction", numbers(&[scene.object.friction, gamma, 0.0]))]
 }
 

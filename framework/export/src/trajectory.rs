@@ -1,36 +1,52 @@
 //! The joints over time as a table, beside models of the hand.
 
 use crate::csv::Table;
+use crate::table::Row;
 use crate::{File, Scene};
-use regrasp_api::JointKind;
+use regrasp_api::{FingerIndex, JointKind};
 
-/// Times (s), joints (rad; m) by the names of the model, the object's pose in H; with `targets`, also what the motors must aim at.
+/// Times (s), joints (rad; m) by the names of the model, the object's pose in H.
+pub(crate) fn trajectory(scene: &Scene<'_>, name: String) -> File {
+    let mut table = Table::new(&[vec!["time".to_owned()], motion_head(scene)].concat());
+    for row in scene.rows() {
+        table.line(&[vec![row.time.to_string()], motion_cells(&row)].concat());
+    }
+    File { name, bytes: table.into_bytes() }
+}
+
+/// The trajectory with all that it takes to carry it out: the segment's number, the links of the fingertip that moves in it and of those that hold
+/// (with `;` between them), what the motors must aim at, and the least distance of a force from its friction cone (N).
 ///
 /// At a time that occurs twice other fingers hold from then on: the forces pass over while everything rests.
-pub(crate) fn trajectory(scene: &Scene<'_>, name: String, targets: bool) -> File {
-    let mut head = vec!["time".to_owned()];
-    head.extend(scene.names.joints.iter().flatten().cloned());
-    head.extend(
-        ["object.x", "object.y", "object.z", "object.qw", "object.qx", "object.qy", "object.qz"]
-            .map(String::from),
-    );
-    if targets {
-        head.extend(
-            motors(scene).map(|(finger, joint)| format!("target.{}", scene.names.joints[finger][joint])),
-        );
-    }
+pub(crate) fn controls(scene: &Scene<'_>, name: String) -> File {
+    let mut head: Vec<String> = ["time", "segment", "moving", "holding"].map(String::from).into();
+    head.extend(motion_head(scene));
+    head.extend(motors(scene).map(|(finger, joint)| format!("target.{}", scene.names.joints[finger][joint])));
+    head.push("force_margin".into());
     let mut table = Table::new(&head);
+    let tip = |finger: FingerIndex| scene.names.tips[finger.index()].as_str();
     for row in scene.rows() {
-        let mut cells = vec![row.time.to_string()];
-        cells.extend(row.q.joints.iter().flat_map(|(_, joints)| joints.to_vec()).map(|q| q.to_string()));
-        let (position, orientation) = row.object();
-        cells.extend(position.iter().chain(&orientation).map(f64::to_string));
-        if targets {
-            cells.extend(motors(scene).map(|motor| target(scene, row.state, row.q, motor).to_string()));
-        }
+        let holding = row.moving().map_or(row.q.holding(), |moving| row.q.holding().without(moving));
+        let holding: Vec<&str> = holding.iter().map(tip).collect();
+        let moving = row.moving().map_or("", tip).to_owned();
+        let mut cells = vec![row.time.to_string(), row.segment.to_string(), moving, holding.join(";")];
+        cells.extend(motion_cells(&row));
+        cells.extend(motors(scene).map(|motor| target(scene, row.state, row.q, motor).to_string()));
+        cells.push(scene.forces.margin(row.state).map_or(String::new(), |margin| margin.to_string()));
         table.line(&cells);
     }
     File { name, bytes: table.into_bytes() }
+}
+
+fn motion_head(scene: &Scene<'_>) -> Vec<String> {
+    let object = ["x", "y", "z", "qw", "qx", "qy", "qz"].map(|name| format!("object.{name}"));
+    scene.names.joints.iter().flatten().cloned().chain(object).collect()
+}
+
+fn motion_cells(row: &Row<'_>) -> Vec<String> {
+    let joints = row.q.joints.iter().flat_map(|(_, joints)| joints.to_vec());
+    let (position, orientation) = row.object();
+    joints.chain(position).chain(orientation).map(|number| number.to_string()).collect()
 }
 
 /// Finger and joint of every motor: all joints but those that another joint drives.
@@ -48,5 +64,5 @@ pub(crate) fn target(
     (finger, joint): (usize, usize),
 ) -> f64 {
     let prismatic = scene.description().finger[finger].joint[joint].kind == JointKind::Prismatic;
-    scene.forces.target(state, q, regrasp_api::FingerIndex(finger as u8), joint, prismatic)
+    scene.forces.target(state, q, FingerIndex(finger as u8), joint, prismatic)
 }

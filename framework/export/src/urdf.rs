@@ -23,7 +23,7 @@ pub(crate) fn files(scene: &Scene<'_>, stem: &str) -> Vec<File> {
         File { name: format!("{stem}.hand.urdf"), bytes: xml.into_bytes() },
         File { name: format!("{stem}.object.urdf"), bytes: object(scene, &mesh) },
         File { name: mesh, bytes: stl(&scene.object.mesh) },
-        trajectory(scene, format!("{stem}.trajectory.csv"), false),
+        trajectory(scene, format!("{stem}.trajectory.csv")),
     ];
     files.extend(meshes.files);
     files
