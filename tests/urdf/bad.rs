@@ -129,15 +129,50 @@ fn joints_that_no_finger_can_have_are_refused() {
 #[test]
 fn fingers_need_three_independent_joints() {
     let kind = "name=\"f0_flexion0\" type=\"revolute\"";
-    says(&refusal(kind, &kind.replace("revolute", "fixed")), &["`f0_tip`", "at least three"]);
+    let fixed = kind.replace("revolute", "fixed");
+    says(
+        &refusal_with(kind, &fixed, "--fingertip-radius 0.01 --tips f0_tip,f1_tip,f2_tip"),
+        &["`f0_tip`", "at least three"],
+    );
     let axis = "<axis xyz=\"1 0 0\"/>";
     says(&refusal(axis, "<axis xyz=\"0 1 0\"/>"), &["f0_tip", "independent"]);
     let mimic = format!("{LIMIT}<mimic joint=\"f0_flexion1\"/>");
-    says(&refusal(LIMIT, &mimic), &["`f0_tip`", "at least three"]);
+    says(
+        &refusal_with(LIMIT, &mimic, "--fingertip-radius 0.01 --tips f0_tip,f1_tip,f2_tip"),
+        &["`f0_tip`", "at least three"],
+    );
+    let desk = Desk::new();
+    desk.write("bad.urdf", good().replace("_abduction\" type=\"revolute\"", "_abduction\" type=\"fixed\""));
+    says(
+        &fails(&desk, "hand bad.urdf"),
+        &["nothing in the file can be a finger", "`f0_tip` (2)", "`f3_tip` (2)"],
+    );
     let desk = Desk::new();
     desk.write("bad.urdf", good().replace("type=\"revolute\"", "type=\"fixed\""));
     let message = fails(&desk, "hand bad.urdf");
     says(&message, &["no fingers"]);
+}
+
+#[test]
+fn meshes_in_millimetres_are_recognised() {
+    let desk = Desk::new();
+    let mesh = "<mesh filename=\"palm.obj\"/>";
+    desk.write("bad.urdf", good().replacen("<box size=\"0.14 0.14 0.02\"/>", mesh, 1));
+    desk.write("palm.obj", "v 0 0 0\nv 70 0 0\nv 0 70 0\nv 0 0 10\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    says(
+        &fails(&desk, "hand bad.urdf --fingertip-radius 0.01"),
+        &["palm.obj", "70.0 m", "scale=\"0.001", "bad.urdf:3"],
+    );
+    desk.write("palm.obj", "v 0 0 0\nv 70 0 0\nv 0 70 0\n");
+    says(&fails(&desk, "hand bad.urdf --fingertip-radius 0.01"), &["palm.obj", "no facets"]);
+}
+
+#[test]
+fn files_of_macros_are_refused_with_what_to_do() {
+    let desk = Desk::new();
+    let macros = "<robot name=\"h\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\"><xacro:include filename=\"a.xacro\"/></robot>";
+    desk.write("hand.urdf", macros);
+    says(&fails(&desk, "hand hand.urdf"), &["xacro hand.urdf.xacro > hand.urdf", "hand.urdf:1"]);
 }
 
 #[test]

@@ -218,3 +218,71 @@ fn what_is_seen_of_a_tip_must_fit_its_ball_and_its_link() {
         assert_eq!(report["hand"]["finger"][0]["joint"][2]["link"].as_array().unwrap().len(), 1);
     }
 }
+
+#[test]
+fn ends_that_can_be_no_finger_are_left_out_of_a_guess() {
+    let desk = desk(Pattern { fingers: 4, joints: 3, link: "capsule", driven: false });
+    let flap = "<link name=\"flap\"/><joint name=\"hinge\" type=\"revolute\"><parent link=\"palm\"/><child link=\"flap\"/>\
+        <axis xyz=\"0 0 1\"/><limit lower=\"0\" upper=\"1\" velocity=\"1\" effort=\"1\"/></joint></robot>";
+    desk.write("urdf/hand.urdf", desk.read("urdf/hand.urdf").replacen("</robot>", flap, 1));
+    let said = desk.run("hand urdf/hand.urdf --fingertip-radius 0.01");
+    assert_eq!(said.code, 0, "{}", said.err);
+    for part in [
+        "4 fingers, 12 joints",
+        "`flap` is no finger: 1 of the joints",
+        "joint `hinge` belongs to no finger: it is held at 0",
+    ] {
+        assert!(said.out.contains(part), "`{part}` is not in:\n{}", said.out);
+    }
+}
+
+/// A robot with the generated hand at the end of each of its arms; an arm is one joint.
+fn two_hands() -> String {
+    let hand = hand(Pattern { fingers: 4, joints: 3, link: "capsule", driven: false });
+    let from = hand.find("<link").unwrap();
+    let body = hand[from..].trim_end().trim_end_matches("</robot>");
+    let named = |side: &str| {
+        let mut text = body.to_owned();
+        for name in ["name=\"", "link=\""] {
+            text = text.replace(name, &format!("{name}{side}_"));
+        }
+        let arm = format!(
+            "<joint name=\"{side}_arm\" type=\"revolute\"><parent link=\"body\"/><child link=\"{side}_palm\"/><axis xyz=\"0 0 1\"/>\
+             <limit lower=\"-1\" upper=\"1\" velocity=\"1\" effort=\"1\"/></joint>"
+        );
+        text + &arm
+    };
+    format!("<robot name=\"two\"><link name=\"body\"/>{}{}</robot>", named("left"), named("right"))
+}
+
+#[test]
+fn one_of_two_hands_is_chosen_by_its_palm() {
+    let desk = Desk::new();
+    desk.write("two.urdf", two_hands());
+    let said = desk.run("hand two.urdf --fingertip-radius 0.01");
+    said.assert_fails(2, &["more than one hand", "`left_palm` (to `left_f0_tip`, ", "`right_palm` (to"]);
+    let said = desk.run("hand two.urdf --fingertip-radius 0.01 --palm right_palm");
+    assert_eq!(said.code, 0, "{}", said.err);
+    for part in
+        ["4 fingers, 12 joints", "right_f3_tip", "everything above joint `right_arm`, which moves the palm"]
+    {
+        assert!(said.out.contains(part), "`{part}` is not in:\n{}", said.out);
+    }
+}
+
+#[test]
+fn faulty_shapes_that_are_not_used_do_no_harm() {
+    let desk = desk(Pattern { fingers: 4, joints: 3, link: "capsule", driven: false });
+    let visual =
+        "<visual><origin xyz=\"a b c\"/><geometry><sphere radius=\"0\"/></geometry></visual><collision>";
+    let text = desk.read("urdf/hand.urdf");
+    desk.write("urdf/hand.urdf", text.replace("<collision>", visual));
+    let said = desk.run("hand urdf/hand.urdf --fingertip-radius 0.01");
+    assert_eq!(said.code, 0, "{}", said.err);
+    let said = desk.run("hand urdf/hand.urdf --fingertip-radius 0.01 --json");
+    desk.write("urdf/hand.urdf", text);
+    assert_eq!(
+        said.json()["hand"],
+        desk.run("hand urdf/hand.urdf --fingertip-radius 0.01 --json").json()["hand"]
+    );
+}

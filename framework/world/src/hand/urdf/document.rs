@@ -21,8 +21,9 @@ pub(super) struct Model {
 pub(super) struct Link {
     pub name: String,
     pub line: usize,
-    pub collision: Vec<Solid>,
-    pub visual: Vec<Solid>,
+    /// What is wrong with the shapes of a link matters only where they are used.
+    pub collision: Result<Vec<Solid>, Fault>,
+    pub visual: Result<Vec<Solid>, Fault>,
 }
 
 /// A geometry with its pose in the link's frame.
@@ -86,12 +87,15 @@ pub(super) struct Mimic {
     pub offset: f64,
 }
 
+/// What to do with a file of macros.
+const EXPAND: &str = "a xacro file must be expanded first, as by `xacro hand.urdf.xacro > hand.urdf`";
+
 type Element<'a> = Node<'a, 'a>;
 
 /// Reads the text of a URDF.
 pub(super) fn parse(text: &str) -> Result<Model, Fault> {
     let document = Document::parse(text).map_err(|error| {
-        let message = format!("not well-formed XML: {error}; a xacro file must be expanded to a URDF first");
+        let message = format!("not well-formed XML: {error}; {EXPAND}");
         Fault::at(error.pos().row as usize, message)
     })?;
     let root = document.root_element();
@@ -106,8 +110,7 @@ pub(super) fn parse(text: &str) -> Result<Model, Fault> {
     let mut model = Model { name, links: Vec::new(), joints: Vec::new(), skipped: Vec::new() };
     for element in root.children().filter(Node::is_element) {
         if element.tag_name().namespace().is_some_and(|space| space.contains("xacro")) {
-            let message = "a xacro macro is left in the file; expand it to a URDF first";
-            return Err(Fault::at(line(&element), message));
+            return Err(Fault::at(line(&element), format!("a xacro macro is left in the file: {EXPAND}")));
         }
         match element.tag_name().name() {
             "link" => model.links.push(link(&element)?),
@@ -144,7 +147,8 @@ fn numbers<const N: usize>(element: &Element<'_>, name: &str) -> Result<Option<[
     numbers.and_then(|numbers| numbers.try_into().ok()).map(Some).ok_or_else(|| {
         let (tag, count) =
             (element.tag_name().name(), if N == 1 { "one finite number" } else { "three finite numbers" });
-        Fault::at(line(element), format!("<{tag} {name}=\"{text}\">: it must be {count}"))
+        let hint = if text.contains(',') { ", with blanks between them, no commas" } else { "" };
+        Fault::at(line(element), format!("<{tag} {name}=\"{text}\">: it must be {count}{hint}"))
     })
 }
 
@@ -198,8 +202,8 @@ fn link(element: &Element<'_>) -> Result<Link, Fault> {
     Ok(Link {
         name: text(element, "name")?,
         line: line(element),
-        collision: solids("collision")?,
-        visual: solids("visual")?,
+        collision: solids("collision"),
+        visual: solids("visual"),
     })
 }
 

@@ -2,8 +2,9 @@
 
 use super::document::{Joint, Kind};
 use super::error::Fault;
+use super::guess;
 use super::tree::Tree;
-use regrasp_api::{MAX_FINGER_JOINTS, MAX_FINGERS, Pose};
+use regrasp_api::{MAX_FINGER_JOINTS, MAX_FINGERS};
 
 /// The palm and the fingers as links and joints of the tree.
 #[derive(Debug)]
@@ -13,6 +14,8 @@ pub(super) struct Fingers {
     pub chains: Vec<Chain>,
     /// Whether the tips were guessed.
     pub guessed: bool,
+    /// The ends that the guess left out, and why.
+    pub left_out: Vec<String>,
 }
 
 /// One finger.
@@ -25,25 +28,37 @@ pub(super) struct Chain {
     pub moving: Vec<usize>,
 }
 
+/// A finger needs as many joints that move by themselves: a fingertip must be able to go in every direction.
+pub(super) const FEWEST_JOINTS: usize = 3;
+
 impl Fingers {
     /// The fingers to the given tips, or to guessed ones; the palm is given, or the last link that all tips hang on.
+    ///
+    /// A guess leaves out what cannot be a finger. Where it makes no hand of the whole file, the one link that carries a hand is the palm.
     pub fn find(tree: &Tree<'_>, tips: &[String], palm: Option<&str>) -> Result<Self, Fault> {
-        let guessed = tips.is_empty();
-        let tips = if guessed { guess(tree)? } else { named(tree, tips)? };
+        let palm = palm.map(|name| tree.link(name).ok_or_else(|| unknown(tree, "palm", name))).transpose()?;
+        if !tips.is_empty() {
+            return Self::new(tree, &named(tree, tips)?, palm);
+        }
+        let whole = guess::hand(tree, palm);
+        match (whole, palm) {
+            (Err(fault), None) => guess::only_hand(tree).unwrap_or(Err(fault)),
+            (whole, _) => whole,
+        }
+    }
+
+    pub(super) fn new(tree: &Tree<'_>, tips: &[usize], palm: Option<usize>) -> Result<Self, Fault> {
         if tips.len() > MAX_FINGERS {
             let message = format!(
-                "{} fingertips, at most {MAX_FINGERS} are possible; name the ones to use",
+                "{} fingertips, at most {MAX_FINGERS} are possible; name the ones to use (`tips`), or the `palm` that they hang on",
                 tips.len()
             );
             return Err(Fault::of_file(message));
         }
-        let palm = match palm {
-            Some(name) => tree.link(name).ok_or_else(|| unknown(tree, "palm", name))?,
-            None => common(tree, &tips),
-        };
+        let palm = palm.unwrap_or_else(|| common(tree, tips));
         let chains = tips.iter().map(|&tip| chain(tree, palm, tip)).collect::<Result<Vec<_>, _>>()?;
         check_apart(tree, &chains)?;
-        Ok(Self { palm, chains, guessed })
+        Ok(Self { palm, chains, guessed: false, left_out: Vec::new() })
     }
 
     /// The finger, and which of its moving joints it is, that a joint belongs to.
@@ -53,7 +68,7 @@ impl Fingers {
     }
 }
 
-fn moves(joint: &Joint) -> bool {
+pub(super) fn moves(joint: &Joint) -> bool {
     joint.kind != Kind::Fixed
 }
 
@@ -80,45 +95,8 @@ fn unknown(tree: &Tree<'_>, what: &str, name: &str) -> Fault {
     ))
 }
 
-/// One tip for each joint behind which nothing moves: among the ends of what it moves, the one with `tip` in its name, or else the farthest.
-fn guess(tree: &Tree<'_>) -> Result<Vec<usize>, Fault> {
-    let mut best: Vec<(usize, (bool, f64), usize)> = Vec::new();
-    for leaf in tree.leaves() {
-        let path = tree.path(leaf);
-        let Some(last) = path.iter().rposition(|&joint| moves(tree.joint(joint))) else { continue };
-        // What is fixed to a link halfway is no finger.
-        if moves_below(tree, path[last]) {
-            continue;
-        }
-        let X = path[last + 1..].iter().fold(Pose::identity(), |X, &joint| X * tree.joint(joint).X_PJ);
-        let is_tip = tree.link_of(leaf).name.to_ascii_lowercase().contains("tip");
-        let merit = (is_tip, X.translation.vector.norm());
-        match best.iter_mut().find(|(joint, ..)| *joint == path[last]) {
-            Some(known) if merit > known.1 => *known = (path[last], merit, leaf),
-            Some(_) => {}
-            None => best.push((path[last], merit, leaf)),
-        }
-    }
-    if best.is_empty() {
-        return Err(Fault::of_file("there are no fingers: no joint of the file moves"));
-    }
-    Ok(best.into_iter().map(|(.., leaf)| leaf).collect())
-}
-
-/// Whether some joint behind this one moves.
-fn moves_below(tree: &Tree<'_>, joint: usize) -> bool {
-    let mut open = tree.below(tree.child(joint)).to_vec();
-    while let Some(joint) = open.pop() {
-        if moves(tree.joint(joint)) {
-            return true;
-        }
-        open.extend(tree.below(tree.child(joint)));
-    }
-    false
-}
-
 /// The last link that all tips hang on; the root where there is one tip alone.
-fn common(tree: &Tree<'_>, tips: &[usize]) -> usize {
+pub(super) fn common(tree: &Tree<'_>, tips: &[usize]) -> usize {
     let paths: Vec<Vec<usize>> = tips.iter().map(|&tip| tree.path(tip)).collect();
     let root = (0..tree.model.links.len()).find(|&link| tree.above(link).is_none()).unwrap_or(0);
     if tips.len() < 2 {
@@ -146,9 +124,9 @@ fn chain(tree: &Tree<'_>, palm: usize, tip: usize) -> Result<Chain, Fault> {
     for &joint in &moving {
         check_kind(tree.joint(joint), tip_name)?;
     }
-    let independent = moving.iter().filter(|&&joint| tree.joint(joint).mimic.is_none()).count();
+    let independent = independent(tree, &moving);
     let line = tree.link_of(tip).line;
-    if independent < 3 {
+    if independent < FEWEST_JOINTS {
         let message = format!(
             "the finger to `{tip_name}` has {independent} joints that move by themselves ({} move at all), at least three are needed; name \
              the fingertips to use (`tips`) to leave it out, it then stays at its zero position",
@@ -165,6 +143,12 @@ fn chain(tree: &Tree<'_>, palm: usize, tip: usize) -> Result<Chain, Fault> {
         return Err(Fault::at(line, message));
     }
     Ok(Chain { tip, path, moving })
+}
+
+/// How many of these joints move by themselves.
+pub(super) fn independent(tree: &Tree<'_>, joints: &[usize]) -> usize {
+    let by_itself = |joint: &&usize| moves(tree.joint(**joint)) && tree.joint(**joint).mimic.is_none();
+    joints.iter().filter(by_itself).count()
 }
 
 fn check_kind(joint: &Joint, tip: &str) -> Result<(), Fault> {

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | What does the XML say, and in which line? | `document.rs` |
 //! | Do the links form a tree? | `tree.rs` |
-//! | Which links are fingertips and palm, which joints lie between? | `fingers.rs` |
+//! | Which links are fingertips and palm, which joints lie between? | `fingers.rs`, `guess.rs` |
 //! | What limits, frames and drivers have the joints? | `joints.rs` |
 //! | Which convex shapes have the links, where are their meshes? | `solids.rs`, `hull.rs`, `packages.rs` |
 //! | Where is the ball that stands for a fingertip, and what of the last link remains beside it? | `tip.rs`, `trim.rs` |
@@ -17,6 +17,7 @@ mod contacts;
 mod document;
 mod error;
 mod fingers;
+mod guess;
 mod hull;
 mod joints;
 mod packages;
@@ -219,6 +220,7 @@ impl Reader<'_> {
         self.report.palm = name(fingers.palm);
         self.report.tips = fingers.chains.iter().map(|chain| name(chain.tip)).collect();
         self.report.tips_guessed = fingers.guessed;
+        self.report.notes.extend(fingers.left_out.iter().cloned());
         let count = (self.options.tip_offset.len(), fingers.chains.len());
         if count.0 > 1 && count.0 != count.1 {
             let message = format!(

@@ -28,6 +28,8 @@ impl Packages {
     /// `package://NAME/rest` is `NAME/rest` below a root, or `rest` in a root that is itself called NAME; where neither is there, the path's
     /// end (at least a folder and the file) below a root.
     pub fn resolve(&self, name: &str) -> Result<PathBuf, Vec<PathBuf>> {
+        // Exporters on Windows write its separators.
+        let name = &name.replace('\\', "/")[..];
         let package = name.strip_prefix("package://").or_else(|| name.strip_prefix("model://"));
         let Some(rest) = package else {
             let path = self.home.join(name.strip_prefix("file://").unwrap_or(name));
@@ -91,6 +93,8 @@ mod tests {
         );
         assert_eq!(found("c.stl"), Ok(at("ws/my_hand/urdf/c.stl").canonicalize().unwrap()));
         assert!(found("../meshes/a.stl").is_ok(), "relative paths start at the URDF");
+        assert!(found("package://my_hand\\meshes\\a.stl").is_ok() && found("..\\meshes\\a.stl").is_ok());
+        assert!(found(&format!("file://{}", at("ws/my_hand/meshes/a.stl").display())).is_ok());
         let tried = packages.resolve("package://my_hand/meshes/none.stl").unwrap_err();
         assert!(tried.contains(&at("else/my_hand/meshes/none.stl")));
         assert!(packages.resolve("package://x/../../../etc/passwd").is_err());

@@ -14,6 +14,9 @@ use std::path::PathBuf;
 /// Sides of the prism that stands for a cylinder; its edges stand out by 2 % of the radius.
 const SIDES: usize = 16;
 
+/// Meshes reach no farther (m) from their origin.
+const FARTHEST: f64 = 10.0;
+
 /// A convex solid in the frame B of what it belongs to: all points within `radius` of the hull of `corners`.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
@@ -80,9 +83,11 @@ impl Shaper {
 
     /// The convex pieces of a link, in its frame: of `<collision>`, or of `<visual>` where there is none.
     pub fn pieces(&mut self, link: &Link) -> Result<Vec<Piece>, Fault> {
-        let (solids, source) = match (&link.collision[..], &link.visual[..]) {
-            ([], []) => return Ok(Vec::new()),
-            ([], visual) => (visual, "visual (it has no collision)"),
+        let collision = link.collision.as_ref().map_err(Clone::clone)?;
+        let (solids, source) = match (&collision[..], &link.visual) {
+            ([], Err(fault)) => return Err(fault.clone()),
+            ([], Ok(visual)) if visual.is_empty() => return Ok(Vec::new()),
+            ([], Ok(visual)) => (&visual[..], "visual (it has no collision)"),
             (collision, _) => (collision, "collision"),
         };
         let (all, done) = self.all(solids)?;
@@ -92,7 +97,8 @@ impl Shaper {
 
     /// The convex pieces of a link as it is seen, in its frame; none where a mesh of it cannot be read: nothing depends on them alone.
     pub fn seen(&mut self, link: &Link) -> Vec<Piece> {
-        self.all(&link.visual).map(|(pieces, _)| pieces).unwrap_or_default()
+        let seen = link.visual.as_ref().ok().and_then(|visual| self.all(visual).ok());
+        seen.map(|(pieces, _)| pieces).unwrap_or_default()
     }
 
     fn all(&mut self, solids: &[Solid]) -> Result<(Vec<Piece>, Vec<String>), Fault> {
@@ -146,9 +152,13 @@ impl Shaper {
         }
         let (points, facets) = &self.read[&path];
         let points: Vec<Vec3> = points.iter().map(|p| p.component_mul(&scale)).collect();
-        if !points.iter().all(|p| p.norm() < 1e3) {
-            let message =
-                format!("the mesh `{}` reaches beyond a kilometre; is a scale missing?", path.display());
+        if !points.iter().all(|p| p.norm() < FARTHEST) {
+            let reach = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
+            let message = format!(
+                "the mesh `{}` reaches {reach:.1} m from its origin, no hand is as large; is it in millimetres? then write \
+                 scale=\"0.001 0.001 0.001\"",
+                path.display()
+            );
             return Err(Fault::at(solid.line, message));
         }
         let parts =

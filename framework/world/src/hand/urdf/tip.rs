@@ -25,7 +25,8 @@ pub(super) struct Tip {
 
 /// The radius (m) of the tip link's shape, if it is one ball.
 pub(super) fn own_radius(link: &Link) -> Option<f64> {
-    let solids = if link.collision.is_empty() { &link.visual } else { &link.collision };
+    let collision = link.collision.as_ref().ok()?;
+    let solids = if collision.is_empty() { link.visual.as_ref().ok()? } else { collision };
     match solids[..] {
         [ref solid] => match solid.geometry {
             Geometry::Sphere { radius } => Some(radius),
