@@ -68,8 +68,8 @@ pub fn written(role: &str) -> PathBuf {
     edited(role, "mine", &[])
 }
 
-/// The library of what `new-plugin` writes, some of its files replaced by others.
-pub fn edited(role: &str, name: &str, files: &[(&str, PathBuf)]) -> PathBuf {
+/// The library of what `new-plugin` writes, some of its files replaced by others: path in the crate, file.
+pub fn edited(role: &str, name: &str, files: &[(PathBuf, PathBuf)]) -> PathBuf {
     let _building = lock();
     let fresh =
         tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("the target folder can be written to");

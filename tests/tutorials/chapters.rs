@@ -62,11 +62,16 @@ fn no_rust_is_typed_into_a_chapter() {
 fn every_tutorial_shows_all_of_its_plugin() {
     let all: String = chapters().into_iter().map(|(_, text)| text).collect();
     for (role, name, _) in TUTORIALS {
-        let file = format!("../../tutorials/{name}-{role}/src/lib.rs");
-        let text = fs::read_to_string(folder().join(&file)).expect("the tutorial has a crate");
-        let anchors = text.lines().filter_map(|line| line.trim().strip_prefix("// ANCHOR: "));
-        let hidden: Vec<&str> =
-            anchors.filter(|anchor| !all.contains(&format!("{{{{#include {file}:{anchor}}}}}"))).collect();
-        assert!(hidden.is_empty(), "{file}: no chapter shows {hidden:?}");
+        let sources = format!("../../tutorials/{name}-{role}/src");
+        for entry in fs::read_dir(folder().join(&sources)).expect("the tutorial has a crate") {
+            let entry = entry.expect("an entry");
+            let file = format!("{sources}/{}", entry.file_name().to_string_lossy());
+            let text = fs::read_to_string(entry.path()).expect("UTF-8");
+            let anchors = text.lines().filter_map(|line| line.trim().strip_prefix("// ANCHOR: "));
+            let hidden: Vec<&str> = anchors
+                .filter(|anchor| !all.contains(&format!("{{{{#include {file}:{anchor}}}}}")))
+                .collect();
+            assert!(hidden.is_empty(), "{file}: no chapter shows {hidden:?}");
+        }
     }
 }

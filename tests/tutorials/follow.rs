@@ -2,12 +2,19 @@
 
 use crate::TUTORIALS;
 use crate::workshop::{edited, regrasp};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The chapter's crate, in the form in which a reader has it.
 fn followed(role: &str, name: &str) -> PathBuf {
     let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("book/tutorials").join(format!("{name}-{role}"));
-    edited(role, name, &["src/lib.rs", "tests/conformance.rs"].map(|file| (file, book.join(file))))
+    let in_folder = |folder: &str| {
+        let entries = fs::read_dir(book.join(folder)).expect("the crate has sources and tests");
+        let files = entries.map(|entry| entry.expect("an entry").path());
+        files.map(|file| (file.strip_prefix(&book).expect("it was found there").to_owned(), file)).collect()
+    };
+    let files: [Vec<(PathBuf, PathBuf)>; 2] = ["src", "tests"].map(in_folder);
+    edited(role, name, &files.concat())
 }
 
 #[test]
