@@ -17,6 +17,12 @@ pub fn code(text: &str) -> String {
     if text.is_empty() { String::new() } else { format!("`{text}`") }
 }
 
+/// The parts of a cell, one below the other; empty ones are left out. Six narrow columns would leave no room for the words.
+pub fn lines(parts: &[String]) -> String {
+    let parts: Vec<&str> = parts.iter().map(String::as_str).filter(|part| !part.is_empty()).collect();
+    parts.join("<br>")
+}
+
 /// A block of code.
 pub fn block(language: &str, text: &str) -> String {
     format!("```{language}\n{}\n```\n\n", text.trim_end())

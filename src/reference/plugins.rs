@@ -1,7 +1,7 @@
 //! The page of plugins and their settings, from the registry.
 
 use super::GENERATED;
-use super::markdown::{block, code, heading, prose, table};
+use super::markdown::{block, code, heading, lines, prose, table};
 use crate::Failure;
 use crate::plugins::{in_scenario, on_command_line, properties};
 use regrasp::api::{Entry, Slot};
@@ -84,9 +84,7 @@ fn settings(schema: &Value) -> String {
     let row = |(key, property): (&String, crate::property::Property<'_>)| {
         vec![
             code(key),
-            property.kind(),
-            property.range(),
-            property.unit().to_owned(),
+            lines(&[property.kind(), property.range_and_unit()]),
             code(&property.default()),
             prose(&property.meaning()),
         ]
@@ -94,6 +92,6 @@ fn settings(schema: &Value) -> String {
     let rows: Vec<Vec<String>> = properties(schema).map(row).collect();
     match rows.is_empty() {
         true => "It has no settings.\n\n".to_owned(),
-        false => table(&["setting", "type", "range", "unit", "default", "meaning"], &rows),
+        false => table(&["setting", "type, range, unit", "default", "meaning"], &rows),
     }
 }

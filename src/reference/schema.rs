@@ -2,7 +2,7 @@
 
 use super::GENERATED;
 use super::examples::Examples;
-use super::markdown::{code, heading, prose, table};
+use super::markdown::{code, heading, lines, prose, table};
 use crate::property::{Property, meaning};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -30,7 +30,8 @@ impl Page<'_> {
                 text += &heading(2, chapter.title, &format!("{}-files", chapter.name));
                 text += &format!("{}\n\n", prose(&meaning(&chapter.schema)));
             }
-            text += &chapter.text();
+            // A page's first chapter has the page's title.
+            text += &chapter.text(if number > 0 { 3 } else { 2 });
         }
         text
     }
@@ -46,21 +47,22 @@ struct Section<'a> {
 }
 
 impl Chapter<'_> {
-    fn text(&self) -> String {
+    /// The chapter with sections at this level of headings.
+    fn text(&self, level: usize) -> String {
         let mut sections: Vec<Section<'_>> = Vec::new();
         let mut known = BTreeMap::new();
         gather(&self.schema, &self.schema, "", &mut sections, &mut known);
         let mut text = self.keys(&self.schema, &[String::new()], &sections);
         for section in &sections {
-            text += &self.section(section, &sections);
+            text += &self.section(section, level, &sections);
         }
         text
     }
 
-    fn section(&self, section: &Section<'_>, all: &[Section<'_>]) -> String {
+    fn section(&self, section: &Section<'_>, level: usize, all: &[Section<'_>]) -> String {
         let path = &section.paths[0];
         let title = if section.list { format!("`[[{path}]]`") } else { format!("`[{path}]`") };
-        let mut text = heading(3, &title, &self.anchor(path));
+        let mut text = heading(level, &title, &self.anchor(path));
         text += &format!("{}\n\n", prose(&meaning(section.schema)));
         if let [_, others @ ..] = section.paths.as_slice()
             && !others.is_empty()
@@ -101,16 +103,14 @@ impl Chapter<'_> {
             let needed = required.contains(&key.as_str());
             vec![
                 code(key),
-                self.kind_of(property, &join(&paths[0], key), all),
+                lines(&[self.kind_of(property, &join(&paths[0], key), all), property.range_and_unit()]),
                 if needed { "*required*".into() } else { self.default(property) },
-                property.range_and_unit(),
-                prose(&property.meaning()),
-                self.example(property, paths, key),
+                lines(&[prose(&property.meaning()), self.example(property, paths, key)]),
             ]
         };
         let rows: Vec<Vec<String>> =
             properties.into_iter().flatten().filter(|(key, _)| given(key)).map(row).collect();
-        let mut text = table(&["key", "type", "default", "range", "meaning", "example"], &rows);
+        let mut text = table(&["key", "type, range", "default", "meaning, example"], &rows);
         if schema.get("additionalProperties") == Some(&Value::Bool(true)) {
             text += "Further keys are the plugin's settings: [plugins and settings](plugins.md) has them all.\n\n";
         }
