@@ -5,6 +5,7 @@ use regrasp::host::{Choices, Registry, slot_by_name};
 use regrasp::planner::{Clock, Silent};
 use regrasp::study::{NeverStops, Run, RunOptions, Setup, scenario};
 
+// ANCHOR: link
 // A dependency alone registers nothing.
 use concurrent_stability_test as _;
 use fingers_first_sampler as _;
@@ -12,6 +13,7 @@ use greasy_contact_model as _;
 use hop_local_planner as _;
 use mend_graph_strategy as _;
 use taut_surface as _;
+// ANCHOR_END: link
 
 struct NoClock;
 
@@ -21,6 +23,7 @@ impl Clock for NoClock {
     }
 }
 
+// ANCHOR: plan
 /// Plans `sphere` with one plugin in the place of the default.
 fn plan(slot: &str, id: &str) -> Run {
     let registry = Registry::linked().expect("no two plugins have one id");
@@ -31,6 +34,7 @@ fn plan(slot: &str, id: &str) -> Run {
     let options = RunOptions { seed: 1, threads: 1, stop: &NeverStops, clock: &NoClock, progress: &Silent };
     setup.run(&options).expect("no plugin breaks the contract")
 }
+// ANCHOR_END: plan
 
 #[test]
 fn every_tutorials_plugin_plans_and_the_plan_verifies() {
