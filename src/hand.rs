@@ -44,6 +44,12 @@ pub struct HandArgs {
     /// Largest acceleration of every joint (rad/s²); by default what the URDF says, or else 20.
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     pub acceleration: Option<f64>,
+    /// Largest velocity (rad/s) of joints for which the URDF says none, or 0.
+    #[arg(long, value_name = "V", allow_negative_numbers = true)]
+    pub velocity: Option<f64>,
+    /// Largest effort (N·m) of joints for which the URDF says none, or 0.
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    pub effort: Option<f64>,
     /// Propose a position for a ball of this radius (m).
     #[arg(long, value_name = "M", default_value_t = 0.03, allow_negative_numbers = true, value_parser = radius)]
     pub ball: f64,
@@ -78,6 +84,8 @@ pub fn run(args: &HandArgs) -> Result<(), Failure> {
         packages: args.packages.clone(),
         mesh_pieces: args.mesh_pieces,
         acceleration: args.acceleration,
+        velocity: args.velocity,
+        effort: args.effort,
     };
     let UrdfHand { description, report } = read_urdf(&args.file, &options).map_err(Failure::bad_input)?;
     let hand = ChainHand::new(description).map_err(Failure::bad_input)?;

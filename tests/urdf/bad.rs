@@ -73,7 +73,7 @@ fn missing_limits_are_no_silent_default() {
     says(&refusal(LIMIT, ""), &["`f0_flexion0`", "no limits", "<limit lower=", "bad.urdf:"]);
     says(&refusal(LIMIT, &LIMIT.replace("upper=\"1.4\" ", "")), &["`f0_flexion0`", "lacks `upper`"]);
     says(&refusal(LIMIT, &LIMIT.replace("velocity=\"4\" ", "")), &["lacks `velocity`"]);
-    says(&refusal(LIMIT, &LIMIT.replace("effort=\"1\"", "")), &["lacks `effort`"]);
+    says(&refusal(LIMIT, &LIMIT.replace("effort=\"1\"", "")), &["lacks `effort`", "give `effort`"]);
     says(&refusal(LIMIT, &LIMIT.replace("\"4\"", "\"0\"")), &["`velocity` = 0", "positive"]);
     says(&refusal(LIMIT, &LIMIT.replace("-1.2", "1.5")), &["`f0_flexion0`", "less than"]);
     says(&refusal(LIMIT, &LIMIT.replace("1.4", "90")), &["degrees"]);
@@ -191,7 +191,9 @@ fn drivers_must_be_joints_of_the_same_finger() {
 
 #[test]
 fn what_the_file_does_not_say_must_be_given() {
-    says(&refusal_with("palm", "palm", ""), &["fingertip_radius", "balls"]);
+    let message = refusal_with("palm", "palm", "");
+    says(&message, &["fingertip_radius", "balls", "`f0_tip`", "suggest about 0.0070"]);
+    says(&refusal_with("palm", "palm", "--velocity 0"), &["`velocity` = 0 is outside"]);
     says(
         &refusal_with("palm", "palm", "--fingertip-radius -1"),
         &["`fingertip_radius` = -1", "0.0001..=0.2"],

@@ -286,3 +286,56 @@ fn faulty_shapes_that_are_not_used_do_no_harm() {
         desk.run("hand urdf/hand.urdf --fingertip-radius 0.01 --json").json()["hand"]
     );
 }
+
+#[test]
+fn velocities_and_efforts_that_a_file_lacks_can_be_given() {
+    let desk = desk(Pattern { fingers: 4, joints: 3, link: "capsule", driven: false });
+    let text = desk.read("urdf/hand.urdf");
+    let text = text.replacen("velocity=\"4\" effort=\"1\"", "velocity=\"0\" effort=\"0\"", 2);
+    desk.write("urdf/hand.urdf", text.replacen(" velocity=\"4\" effort=\"1\"", "", 1));
+    let said = desk.run("hand urdf/hand.urdf --fingertip-radius 0.01 --velocity 3 --effort 0.5 --json");
+    assert_eq!(said.code, 0, "{}", said.err);
+    let report = said.json();
+    for (finger, joint, limits) in [(0, 0, (3.0, 0.5)), (0, 2, (3.0, 0.5)), (1, 0, (4.0, 1.0))] {
+        let joint = &report["hand"]["finger"][finger]["joint"][joint];
+        assert_eq!(
+            (joint["velocity"].as_f64().unwrap(), joint["effort"].as_f64().unwrap()),
+            limits,
+            "{joint}"
+        );
+    }
+    assert!(
+        report["report"]["notes"]
+            .to_string()
+            .contains("`f0_abduction`: the file says no velocity; 3 is taken")
+    );
+    // The scenario has keys of the same names.
+    desk.write(
+        "a.toml",
+        scenario(4)
+            .replace("fingertip_radius = 0.01", "fingertip_radius = 0.01\nvelocity = 3.0\neffort = 0.5"),
+    );
+    assert_eq!(desk.run("plan a.toml").code, 0);
+}
+
+#[test]
+fn a_cylinder_with_a_ball_at_each_end_is_a_capsule() {
+    let desk = desk(Pattern { fingers: 4, joints: 3, link: "capsule", driven: false });
+    let json =
+        |desk: &Desk| desk.run("hand urdf/hand.urdf --fingertip-radius 0.01 --json").json()["hand"].clone();
+    let (text, capsules) = (desk.read("urdf/hand.urdf"), json(&desk));
+    let mut rods = text;
+    for length in [0.065, 0.05] {
+        let capsule = format!("<capsule radius=\"0.007\" length=\"{length}\"/></geometry></collision>");
+        assert!(rods.contains(&capsule));
+        let ball = |z: f64| {
+            format!(
+                "<collision><origin xyz=\"0 0 {z}\"/><geometry><sphere radius=\"0.007\"/></geometry></collision>"
+            )
+        };
+        let cylinder = capsule.replace("<capsule", "<cylinder") + &ball(length) + &ball(0.0);
+        rods = rods.replace(&capsule, &cylinder);
+    }
+    desk.write("urdf/hand.urdf", rods);
+    assert_eq!(json(&desk), capsules);
+}

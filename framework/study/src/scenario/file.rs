@@ -115,6 +115,16 @@ pub struct HandChoice {
     #[schemars(range(min = 1e-3, max = 1e9))]
     #[schemars(example = 20.0)]
     pub acceleration: Option<f64>,
+    /// Largest velocity (rad/s) of joints for which the URDF says none, or 0.
+    #[serde(default)]
+    #[schemars(range(min = 1e-3, max = 1e9))]
+    #[schemars(example = 3.0)]
+    pub velocity: Option<f64>,
+    /// Largest effort (N·m) of joints for which the URDF says none, or 0.
+    #[serde(default)]
+    #[schemars(range(min = 1e-6, max = 1e9))]
+    #[schemars(example = 1.0)]
+    pub effort: Option<f64>,
 }
 
 /// One table for each slot.

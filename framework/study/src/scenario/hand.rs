@@ -96,8 +96,17 @@ fn urdf_refused(scenario: &Document, error: UrdfError) -> ScenarioError {
 
 impl HandChoice {
     /// The keys that say how a URDF is read.
-    const URDF_KEYS: [&'static str; 7] =
-        ["tips", "fingertip_radius", "tip_offset", "palm", "packages", "mesh_pieces", "acceleration"];
+    const URDF_KEYS: [&'static str; 9] = [
+        "tips",
+        "fingertip_radius",
+        "tip_offset",
+        "palm",
+        "packages",
+        "mesh_pieces",
+        "acceleration",
+        "velocity",
+        "effort",
+    ];
 
     /// The first of these keys that is given.
     fn urdf_key(&self) -> Option<&'static str> {
@@ -109,6 +118,8 @@ impl HandChoice {
             !self.packages.is_empty(),
             self.mesh_pieces.is_some(),
             self.acceleration.is_some(),
+            self.velocity.is_some(),
+            self.effort.is_some(),
         ];
         Self::URDF_KEYS.into_iter().zip(given).find_map(|(key, given)| given.then_some(key))
     }
@@ -122,6 +133,8 @@ impl HandChoice {
             packages: self.packages.iter().map(|package| -> PathBuf { folder.join(package) }).collect(),
             mesh_pieces: self.mesh_pieces,
             acceleration: self.acceleration,
+            velocity: self.velocity,
+            effort: self.effort,
         }
     }
 }

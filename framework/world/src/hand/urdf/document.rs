@@ -27,7 +27,7 @@ pub(super) struct Link {
 }
 
 /// A geometry with its pose in the link's frame.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Solid {
     pub line: usize,
     pub X_LS: Pose,
@@ -35,7 +35,7 @@ pub(super) struct Solid {
 }
 
 /// Lengths in metres.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Geometry {
     Box { size: [f64; 3] },
     Sphere { radius: f64 },

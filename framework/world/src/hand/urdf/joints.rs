@@ -1,5 +1,6 @@
 //! The joints of a finger with their limits, drivers and frames.
 
+use super::UrdfOptions;
 use super::document::{Joint, Kind, Limit};
 use super::error::Fault;
 use super::fingers::{Chain, Fingers};
@@ -26,7 +27,7 @@ pub(super) fn joints(
     tree: &Tree<'_>,
     fingers: &Fingers,
     chain: &Chain,
-    acceleration: Option<f64>,
+    options: &UrdfOptions,
     notes: &mut Vec<String>,
 ) -> Result<FingerJoints, Fault> {
     let (mut joints, mut X) = (Vec::new(), Pose::identity());
@@ -41,7 +42,7 @@ pub(super) fn joints(
         if joints.is_empty() {
             (base, origin) = (X, Pose::identity());
         }
-        joints.push(description(tree, (fingers, chain), joint, &origin, acceleration, notes)?);
+        joints.push(description(tree, (fingers, chain), joint, &origin, options, notes)?);
         X = Pose::identity();
     }
     narrow(&mut joints, chain, tree, notes)?;
@@ -53,13 +54,13 @@ fn description(
     (fingers, chain): (&Fingers, &Chain),
     joint: &Joint,
     origin: &Pose,
-    acceleration: Option<f64>,
+    options: &UrdfOptions,
     notes: &mut Vec<String>,
 ) -> Result<JointDescription, Fault> {
     let mimic = mimic(tree, fingers, chain, joint)?;
     let limits = match (&mimic, joint.limit) {
-        (Some(mimic), None) => driven_limits(tree, mimic, joint, notes)?,
-        (_, limit) => own_limits(joint, limit, notes)?,
+        (Some(mimic), None) => driven_limits(tree, mimic, joint, options, notes)?,
+        (_, limit) => own_limits(joint, limit, options, notes)?,
     };
     let still = *origin == Pose::identity();
     Ok(JointDescription {
@@ -70,7 +71,7 @@ fn description(
         lower: limits.lower,
         upper: limits.upper,
         velocity: limits.velocity,
-        acceleration: acceleration.or(limits.acceleration).unwrap_or(ACCELERATION),
+        acceleration: options.acceleration.or(limits.acceleration).unwrap_or(ACCELERATION),
         effort: limits.effort,
         mimic,
         link: Vec::new(),
@@ -85,17 +86,30 @@ struct Limits {
     acceleration: Option<f64>,
 }
 
-/// A joint's own limits: all must be given, but for the positions of a continuous joint.
-fn own_limits(joint: &Joint, limit: Option<Limit>, notes: &mut Vec<String>) -> Result<Limits, Fault> {
+/// A joint's own limits: all must be given, in the file or by the options, but for the positions of a continuous joint.
+fn own_limits(
+    joint: &Joint,
+    limit: Option<Limit>,
+    options: &UrdfOptions,
+    notes: &mut Vec<String>,
+) -> Result<Limits, Fault> {
     let name = &joint.name;
     let write = "<limit lower=\"…\" upper=\"…\" velocity=\"…\" effort=\"…\"/> (rad, rad/s, N·m)";
-    let Some(limit) = limit else {
+    let Some(limit) = limit.map(|limit| filled(joint, limit, options, notes)) else {
         let message = format!("joint `{name}` has no limits; write {write} into it");
         return Err(Fault::at(joint.line, message));
     };
     let need = |value: Option<f64>, what: &str| {
         value.ok_or_else(|| {
-            Fault::at(limit.line, format!("joint `{name}`: its <limit> lacks `{what}`; write {write}"))
+            let option = if ["velocity", "effort"].contains(&what) {
+                format!(", or give `{what}` for all joints that lack it")
+            } else {
+                String::new()
+            };
+            Fault::at(
+                limit.line,
+                format!("joint `{name}`: its <limit> lacks `{what}`; write {write}{option}"),
+            )
         })
     };
     let (lower, upper) = if joint.kind == Kind::Continuous {
@@ -107,8 +121,9 @@ fn own_limits(joint: &Joint, limit: Option<Limit>, notes: &mut Vec<String>) -> R
     let (velocity, effort) = (need(limit.velocity, "velocity")?, need(limit.effort, "effort")?);
     for (what, value) in [("velocity", velocity), ("effort", effort)] {
         if value <= 0.0 {
-            let message =
-                format!("joint `{name}`: `{what}` = {value} must be positive, or the joint could not move");
+            let message = format!(
+                "joint `{name}`: `{what}` = {value} must be positive, or the joint could not move; correct it, or give `{what}` for all joints that lack it"
+            );
             return Err(Fault::at(limit.line, message));
         }
     }
@@ -121,15 +136,30 @@ fn own_limits(joint: &Joint, limit: Option<Limit>, notes: &mut Vec<String>) -> R
     Ok(Limits { lower, upper, velocity, effort, acceleration: limit.acceleration.filter(|a| *a > 0.0) })
 }
 
+/// With what the options say of joints whose file says no velocity or effort, or zero, as some exporters write for "unknown".
+fn filled(joint: &Joint, limit: Limit, options: &UrdfOptions, notes: &mut Vec<String>) -> Limit {
+    let mut fill = |what: &str, own: Option<f64>, given: Option<f64>| match (own, given) {
+        (None | Some(0.0), Some(given)) => {
+            notes
+                .push(format!("joint `{}`: the file says no {what}; {given} is taken, as given", joint.name));
+            Some(given)
+        }
+        (own, _) => own,
+    };
+    let velocity = fill("velocity", limit.velocity, options.velocity);
+    Limit { velocity, effort: fill("effort", limit.effort, options.effort), ..limit }
+}
+
 /// The limits of a driven joint for which the file gives none: those of its driver, multiplied.
 fn driven_limits(
     tree: &Tree<'_>,
     mimic: &Mimic,
     joint: &Joint,
+    options: &UrdfOptions,
     notes: &mut Vec<String>,
 ) -> Result<Limits, Fault> {
     let driver = tree.joint(tree.joint_named(&mimic.joint).expect("the driver was looked up before"));
-    let of_driver = own_limits(driver, driver.limit, &mut Vec::new())?;
+    let of_driver = own_limits(driver, driver.limit, options, &mut Vec::new())?;
     let at = |q: f64| mimic.multiplier * q + mimic.offset;
     let (a, b) = (at(of_driver.lower), at(of_driver.upper));
     notes.push(format!(

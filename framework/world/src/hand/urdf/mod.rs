@@ -6,7 +6,7 @@
 //! | Do the links form a tree? | `tree.rs` |
 //! | Which links are fingertips and palm, which joints lie between? | `fingers.rs`, `guess.rs` |
 //! | What limits, frames and drivers have the joints? | `joints.rs` |
-//! | Which convex shapes have the links, where are their meshes? | `solids.rs`, `hull.rs`, `packages.rs` |
+//! | Which convex shapes have the links, where are their meshes? | `solids.rs`, `rods.rs`, `hull.rs`, `packages.rs` |
 //! | Where is the ball that stands for a fingertip, and what of the last link remains beside it? | `tip.rs`, `trim.rs` |
 //! | Which bodies always touch, and where do the fingers rest? | `contacts.rs` |
 //!
@@ -21,6 +21,7 @@ mod guess;
 mod hull;
 mod joints;
 mod packages;
+mod rods;
 mod solids;
 mod tip;
 mod tree;
@@ -63,6 +64,10 @@ pub struct UrdfOptions {
     pub mesh_pieces: Option<usize>,
     /// The largest acceleration of every joint (rad/s²); where absent, what the file says, or else 20.
     pub acceleration: Option<f64>,
+    /// The largest velocity (rad/s) of joints for which the file says none, or 0.
+    pub velocity: Option<f64>,
+    /// The largest effort (N·m) of joints for which the file says none, or 0.
+    pub effort: Option<f64>,
 }
 
 /// A hand from a URDF, and how it was understood.
@@ -120,15 +125,13 @@ fn convert(path: &Path, text: &str, options: &UrdfOptions) -> Result<UrdfHand, F
     let model = document::parse(text)?;
     let tree = Tree::new(&model)?;
     let fingers = Fingers::find(&tree, &options.tips, options.palm.as_deref())?;
-    let radius = radius(&tree, &fingers, options)?;
-    let mut reader = Reader {
-        tree: &tree,
-        fingers: &fingers,
-        options,
-        radius,
-        shaper: Shaper::new(Packages::new(path, &options.packages), options.mesh_pieces.unwrap_or(1)),
-        report: UrdfReport::default(),
+    let mut shaper = Shaper::new(Packages::new(path, &options.packages), options.mesh_pieces.unwrap_or(1));
+    let radius = match options.fingertip_radius {
+        Some(radius) => radius,
+        None => tip::common_radius(&tree, &fingers, &mut shaper)?,
     };
+    let mut reader =
+        Reader { tree: &tree, fingers: &fingers, options, radius, shaper, report: UrdfReport::default() };
     let mut description = reader.hand()?;
     let mut report = reader.report;
     report.shapes = reader.shaper.notes;
@@ -152,23 +155,10 @@ fn check_options(options: &UrdfOptions) -> Result<(), Fault> {
     };
     options.fingertip_radius.map_or(Ok(()), |r| within("fingertip_radius", r, 1e-4, 0.2, " m"))?;
     options.acceleration.map_or(Ok(()), |a| within("acceleration", a, 1e-3, 1e9, " rad/s²"))?;
+    options.velocity.map_or(Ok(()), |v| within("velocity", v, 1e-3, 1e9, " rad/s"))?;
+    options.effort.map_or(Ok(()), |e| within("effort", e, 1e-6, 1e9, " N·m"))?;
     options.mesh_pieces.map_or(Ok(()), |n| within("mesh_pieces", n as f64, 1.0, 64.0, ""))?;
     options.tip_offset.iter().flatten().try_for_each(|&x| within("tip_offset", x, -10.0, 10.0, " m"))
-}
-
-/// The fingertips' radius: given, or that of the tip links' own balls, all equal.
-fn radius(tree: &Tree<'_>, fingers: &Fingers, options: &UrdfOptions) -> Result<f64, Fault> {
-    if let Some(radius) = options.fingertip_radius {
-        return Ok(radius);
-    }
-    let radii: Vec<Option<f64>> =
-        fingers.chains.iter().map(|chain| tip::own_radius(tree.link_of(chain.tip))).collect();
-    match radii[0].filter(|first| radii.iter().flatten().all(|r| (r - first).abs() < 1e-6)) {
-        Some(radius) if radii.iter().all(Option::is_some) && (1e-4..=0.2).contains(&radius) => Ok(radius),
-        _ => Err(Fault::of_file(
-            "the fingertips are not balls of one radius: give `fingertip_radius`, the radius (m) of the balls that are to stand for them",
-        )),
-    }
 }
 
 /// Elements that say nothing about a hand's geometry, each kind once.
@@ -310,7 +300,7 @@ impl Reader<'_> {
         let (tree, fingers) = (self.tree, self.fingers);
         let notes = &mut self.report.notes;
         let joints::FingerJoints { base, mut joints, X_LTip } =
-            joints::joints(tree, fingers, chain, self.options.acceleration, notes)?;
+            joints::joints(tree, fingers, chain, self.options, notes)?;
         let last = joints.len() - 1;
         for (place, joint) in joints.iter_mut().enumerate().take(last) {
             joint.link = placed(owned.iter().filter(|part| part.owner == Owner::Finger(finger, place)));

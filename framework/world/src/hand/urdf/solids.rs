@@ -4,6 +4,7 @@ use super::document::{Geometry, Link, Solid};
 use super::error::Fault;
 use super::hull;
 use super::packages::Packages;
+use super::rods;
 use crate::mesh::{in_memory, read_points};
 use nalgebra::Point3;
 use regrasp_api::{Mesh, PlacedShape, Pose, PoseDescription, Shape, Vec3};
@@ -59,6 +60,12 @@ impl Piece {
         PlacedShape { shape: self.shape.clone(), pose }
     }
 
+    /// The corners, and for rounded pieces the ends of their balls along the axes.
+    pub fn spread(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let reach = Vec3::repeat(self.radius);
+        self.corners.iter().flat_map(move |p| [p - reach, p + reach])
+    }
+
     /// How far the piece reaches in the direction `n` (m).
     pub fn reach(&self, n: &Vec3) -> f64 {
         self.corners.iter().map(|p| n.dot(p)).fold(f64::NEG_INFINITY, f64::max) + self.radius
@@ -95,6 +102,14 @@ impl Shaper {
         Ok(all)
     }
 
+    /// The convex pieces of a link, with nothing said; none where they cannot be read.
+    pub fn glimpse(&mut self, link: &Link) -> Vec<Piece> {
+        let known = self.notes.len();
+        let pieces = self.pieces(link).unwrap_or_default();
+        self.notes.truncate(known);
+        pieces
+    }
+
     /// The convex pieces of a link as it is seen, in its frame; none where a mesh of it cannot be read: nothing depends on them alone.
     pub fn seen(&mut self, link: &Link) -> Vec<Piece> {
         let seen = link.visual.as_ref().ok().and_then(|visual| self.all(visual).ok());
@@ -103,7 +118,8 @@ impl Shaper {
 
     fn all(&mut self, solids: &[Solid]) -> Result<(Vec<Piece>, Vec<String>), Fault> {
         let (mut all, mut done) = (Vec::new(), Vec::new());
-        for solid in solids {
+        let solids = rods::joined(solids);
+        for solid in solids.iter().map(AsRef::as_ref) {
             let (pieces, what) = self.solid(solid)?;
             all.extend(pieces);
             done.push(what);

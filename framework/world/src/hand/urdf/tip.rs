@@ -1,8 +1,11 @@
 //! The ball that stands for a fingertip: where its centre lies, and what of the link it replaces.
 
 use super::document::{Geometry, Link};
+use super::error::Fault;
+use super::fingers::{Chain, Fingers};
 use super::hull;
-use super::solids::Piece;
+use super::solids::{Piece, Shaper};
+use super::tree::Tree;
 use regrasp_api::{Pose, Shape, Vec3, any_orthogonal};
 use std::f64::consts::{PI, TAU};
 
@@ -24,7 +27,7 @@ pub(super) struct Tip {
 }
 
 /// The radius (m) of the tip link's shape, if it is one ball.
-pub(super) fn own_radius(link: &Link) -> Option<f64> {
+fn own_radius(link: &Link) -> Option<f64> {
     let collision = link.collision.as_ref().ok()?;
     let solids = if collision.is_empty() { link.visual.as_ref().ok()? } else { collision };
     match solids[..] {
@@ -34,6 +37,42 @@ pub(super) fn own_radius(link: &Link) -> Option<f64> {
         },
         _ => None,
     }
+}
+
+/// The radius (m) of the tip links' own balls, all equal; else a fault that suggests one.
+pub(super) fn common_radius(tree: &Tree<'_>, fingers: &Fingers, shaper: &mut Shaper) -> Result<f64, Fault> {
+    let tips = || fingers.chains.iter().map(|chain| tree.link_of(chain.tip));
+    let radii: Vec<Option<f64>> = tips().map(own_radius).collect();
+    let first = radii[0].filter(|first| (1e-4..=0.2).contains(first));
+    let same = |first: f64| radii.iter().all(|r| r.is_some_and(|r| (r - first).abs() < 1e-6));
+    if let Some(radius) = first.filter(|&first| same(first)) {
+        return Ok(radius);
+    }
+    // A tip link without a shape is a name for the end of the link before.
+    let shape = |chain: &Chain| {
+        let links = [Some(chain.tip), chain.path.last().map(|&joint| tree.parent(joint))];
+        links
+            .into_iter()
+            .flatten()
+            .map(|link| shaper.glimpse(tree.link_of(link)))
+            .find(|pieces| !pieces.is_empty())
+    };
+    let half = |pieces: Vec<Piece>| {
+        let corners: Vec<Vec3> = pieces.iter().flat_map(Piece::spread).collect();
+        let (low, high) = hull::around(&corners);
+        ((high - low) / 2.0).min()
+    };
+    let thin = fingers.chains.iter().filter_map(shape).map(half).fold(f64::INFINITY, f64::min);
+    let hint = if (1e-3..=0.2).contains(&thin) {
+        format!("; their shapes suggest about {:.4}", thin)
+    } else {
+        String::new()
+    };
+    let names: Vec<String> = tips().map(|tip| format!("`{}`", tip.name)).collect();
+    Err(Fault::of_file(format!(
+        "the fingertips ({}) are not balls of one radius: give `fingertip_radius`, the radius (m) of the balls that are to stand for them{hint}",
+        names.join(", ")
+    )))
 }
 
 impl Tip {
