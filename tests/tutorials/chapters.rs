@@ -52,7 +52,8 @@ fn no_rust_is_typed_into_a_chapter() {
         for block in text.split("```rust").skip(1) {
             let code =
                 block.split_once('\n').and_then(|(_, rest)| rest.split("```").next()).unwrap_or_default();
-            let typed = code.lines().find(|line| !line.is_empty() && !line.starts_with("{{#include "));
+            let typed =
+                code.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with("{{#include "));
             assert_eq!(typed, None, "{}", file.display());
         }
     }

@@ -30,3 +30,16 @@ fn every_tutorial_builds_out_of_the_tree_loads_and_plans() {
         assert!(planned["plugins"].to_string().contains(&format!("{role}/{name}")), "{}", planned["plugins"]);
     }
 }
+
+#[test]
+fn wrong_settings_are_refused_in_the_words_of_the_chapter() {
+    let library = followed("contact-model", "greasy");
+    let library = library.to_str().expect("the target folder is UTF-8");
+    let chapter = include_str!("../../book/src/tutorials/contact-model.md");
+    for setting in ["contact-model.factor=2", "contact-model.fctor=0.5", "contact-model.side=[0,0,0]"] {
+        let choice = ["--use", "contact-model=greasy", "--set", setting];
+        let said = regrasp(&[["plan", "cubic", "--load", library].as_slice(), &choice].concat());
+        let shown = chapter.lines().skip_while(|line| !line.ends_with(setting)).nth(1);
+        assert_eq!((said.code, said.err.lines().next()), (Some(2), shown), "{setting}");
+    }
+}
