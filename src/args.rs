@@ -57,13 +57,13 @@ pub struct PlanArgs {
     pub sets: Vec<String>,
     #[command(flatten)]
     pub libraries: LibraryArgs,
-    /// Stop after this many seconds.
+    /// Stop after this many seconds; by default when the scenario says, or never.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     pub time_limit: Option<f64>,
-    /// Generate at most this many nodes for each goal.
+    /// Generate at most this many nodes for each goal; by default as many as the scenario says.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 1, 10_000_000>)]
     pub max_nodes: Option<u64>,
-    /// Compute with this many threads.
+    /// Compute with this many threads, 1 to 256; the plan is the same.
     #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16, 1, 256>)]
     pub threads: u16,
     /// Write the plan to this file.

@@ -48,13 +48,13 @@ pub struct CompareArgs {
     pub sets: Vec<String>,
     #[command(flatten)]
     pub libraries: LibraryArgs,
-    /// Stop each run after this many seconds.
+    /// Stop each run after this many seconds; by default when its scenario says, or never.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     pub time_limit: Option<f64>,
-    /// Generate at most this many nodes for each goal.
+    /// Generate at most this many nodes for each goal; by default as many as the scenario says.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 1, 10_000_000>)]
     pub max_nodes: Option<u64>,
-    /// Make this many runs at once, each on one thread [default: one for each core].
+    /// Make this many runs at once, 1 to 1024, each on one thread [default: one for each core].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16, 1, 1024>)]
     pub threads: Option<u16>,
     /// Leave out scenarios that a variant's plugins do not support, instead of refusing the study.

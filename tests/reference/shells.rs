@@ -23,6 +23,9 @@ fn every_shell_has_completions_of_every_command() {
             assert!(script.contains(&command), "{shell} does not know {command}");
         }
         assert!(script.contains("time-limit"), "{shell} knows no option");
+        // The other shells' scripts have no values of arguments.
+        let names = ["bash", "zsh"].contains(&shell);
+        assert!(!names || script.contains("local-planner"), "{shell} knows no role");
     }
     let output = regrasp(folder.path(), "completions bsh");
     assert_eq!(output.status.code(), Some(2));
@@ -42,7 +45,10 @@ fn offered(folder: &Path, words: &str) -> Vec<String> {
         .output()
         .expect("bash is part of Linux systems");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8_lossy(&output.stdout).lines().map(str::to_owned).collect()
+    let mut offers: Vec<String> =
+        String::from_utf8_lossy(&output.stdout).lines().map(str::to_owned).collect();
+    offers.sort();
+    offers
 }
 
 #[test]
@@ -54,6 +60,10 @@ fn bash_completes_commands_options_and_values() {
     assert_eq!(offered(folder.path(), "regrasp ver"), ["verify"]);
     assert_eq!(offered(folder.path(), "regrasp plan --time"), ["--time-limit"]);
     assert_eq!(offered(folder.path(), "regrasp schema st"), ["study"]);
+    assert_eq!(offered(folder.path(), "regrasp plan cub"), ["cube-free", "cubic"]);
+    assert_eq!(offered(folder.path(), "regrasp scenarios four"), ["four-finger"]);
+    assert_eq!(offered(folder.path(), "regrasp new-plugin graph"), ["graph-strategy"]);
+    assert!(offered(folder.path(), "regrasp plugins sampler/").contains(&"sampler/rlg".to_owned()));
     // What is for those who write the book is not offered.
     assert!(!offered(folder.path(), "regrasp \"\"").contains(&"reference".to_owned()));
 }
