@@ -36,20 +36,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let [ball, cube, egg] = ["sphere", "cubic", "ellip-obst"].map(regrasp::load);
     let (ball, cube, egg) = (ball?, cube?, egg?);
-    let sphere = Example::solve(&ball)?;
+    let sphere = Example::solve(&ball, 0)?;
     write("sphere-strip", motions::strip(&sphere, 8, 4))?;
     write("timeline", charts::timeline(&sphere)?)?;
     write("transfer", motions::transfer(&sphere)?)?;
-    let cubic = Example::solve(&cube)?;
+    let cubic = Example::solve(&cube, 1)?;
     write("regrasp", motions::regrasp(&cubic)?)?;
     write("offset", charts::offset(&cubic)?)?;
-    let ellipsoid = Example::solve(&egg)?;
+    let ellipsoid = Example::solve(&egg, 5)?;
     write("lift", motions::liftable(&ellipsoid)?)?;
     write("slide", motions::slide_and_roll(&ellipsoid)?)?;
     write("graph", charts::graph(&ellipsoid))?;
     // The hand with the TriFinger's kinematics, three times as large, is left out.
     let suite = SUITE.iter().map(|name| regrasp::load(name)).collect::<Result<Vec<_>, _>>()?;
-    let suite = suite.iter().map(Example::solve).collect::<Result<Vec<_>, _>>()?;
+    let suite = suite.iter().map(|scenario| Example::solve(scenario, 0)).collect::<Result<Vec<_>, _>>()?;
     write("suite", motions::first_grasps(&suite))?;
     Ok(())
 }

@@ -16,10 +16,10 @@ pub struct Example<'a> {
 }
 
 impl<'a> Example<'a> {
-    /// Plans with seed 0.
-    pub fn solve(scenario: &'a Scenario) -> Result<Self, Box<dyn Error>> {
+    /// Plans with this seed.
+    pub fn solve(scenario: &'a Scenario, seed: u64) -> Result<Self, Box<dyn Error>> {
         let setup = regrasp::setup(scenario)?;
-        let run = setup.run(&regrasp::Stopwatch::start().options(0))?;
+        let run = setup.run(&regrasp::Stopwatch::start().options(seed))?;
         match run.why_not_solved() {
             Some(why) => Err(format!("`{}`: {why}", scenario.name).into()),
             None => Ok(Self { setup, run }),

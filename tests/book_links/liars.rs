@@ -1,6 +1,7 @@
 //! Small books with one fault each.
 
 use crate::commands::{Help, faults as command_faults};
+use crate::outputs::faults as output_faults;
 use crate::scenarios::faults as scenario_faults;
 use crate::tree::Tree;
 use std::fs;
@@ -14,7 +15,8 @@ const GOOD: &[(&str, &str)] = &[
     (
         "book/src/one.md",
         "# One\n\n## First steps\n\n## First steps\n\n[two](deep/two.md#the---option-of-plan-x) [again](#first-steps-1) \
-         [by hand](deep/two.md#by-hand) [by name](deep/two.md#second)\n\n```\n$ regrasp plan ball --seed 7 -o x.json && regrasp verify x.json\n```\n",
+         [by hand](deep/two.md#by-hand) [by name](deep/two.md#second)\n\n```\n$ regrasp plan ball --seed 7 -o x.json && regrasp verify x.json\n```\n\n\
+         <!-- output of: regrasp verify x && regrasp plan ball -->\n```text\nball: solved\n  planning   5 ms\n  ...\n  plan       2 transfers\n```\n",
     ),
     (
         "book/src/deep/two.md",
@@ -33,6 +35,16 @@ fn help() -> Help {
     Help([plan, ("verify".into(), options(&[]))].into())
 }
 
+/// What a program might print.
+fn printed(words: &[&str]) -> String {
+    match words {
+        ["plan", name] => {
+            format!("{name}: solved\n  planning   3 ms\n  graph      7 nodes\n  plan       2 transfers\n")
+        }
+        _ => "what else?".into(),
+    }
+}
+
 /// What is wrong with the good book after `change` was made to it.
 fn faults(change: impl FnOnce(&Path)) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
@@ -46,6 +58,7 @@ fn faults(change: impl FnOnce(&Path)) -> Vec<String> {
     let mut faults = tree.faults();
     faults.extend(command_faults(&tree, &help()));
     faults.extend(scenario_faults(&tree));
+    faults.extend(output_faults(&tree, &|words: &[&str], _: &Path| printed(words)));
     faults
 }
 
@@ -150,4 +163,27 @@ fn pieces_of_scenarios_that_are_none_are_found() {
         liar("book/src/deep/two.md", "friction = 0.5", "fricton = 0.5").contains("did you mean `friction`")
     );
     assert!(liar("book/src/deep/two.md", "friction = 0.5", "friction = -0.5").contains("outside"));
+}
+
+#[test]
+fn outputs_that_the_program_does_not_print_are_found() {
+    let fault = liar("book/src/one.md", "2 transfers", "3 transfers");
+    assert!(fault.ends_with("does not print here:   plan       3 transfers"), "{fault}");
+    assert!(
+        liar(
+            "book/src/one.md",
+            "ball: solved\n  planning",
+            "  planning   5 ms\n  graph      8 nodes\n  planning"
+        )
+        .contains("8 nodes")
+    );
+    // The right lines in the wrong order.
+    assert!(
+        liar(
+            "book/src/one.md",
+            "  ...\n  plan       2 transfers",
+            "  plan       2 transfers\n  graph      7 nodes"
+        )
+        .contains("7 nodes")
+    );
 }

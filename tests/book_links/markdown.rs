@@ -14,8 +14,18 @@ pub struct Page {
     pub blocks: Vec<(usize, String)>,
     /// The code blocks in TOML, likewise.
     pub tables: Vec<(usize, String)>,
+    /// The blocks that a comment says to be printed by a command.
+    pub outputs: Vec<Output>,
     /// What `{{#include …}}` names, with the line it stands in.
     pub includes: Vec<(usize, String)>,
+}
+
+/// A block with the command that printed it.
+#[derive(Debug)]
+pub struct Output {
+    pub line: usize,
+    pub command: String,
+    pub text: String,
 }
 
 impl Page {
@@ -60,6 +70,8 @@ struct Reader {
     line: usize,
     /// The heading that is being read, without an id of its own.
     heading: Option<String>,
+    /// The command that printed the next code block.
+    printed_by: Option<String>,
     /// The code block that is being read, its line and whether it is TOML.
     block: Option<(usize, String, bool)>,
 }
@@ -80,6 +92,12 @@ impl Reader {
             Event::Start(Tag::CodeBlock(kind)) => self.begin_block(&kind),
             Event::End(TagEnd::CodeBlock) => {
                 if let Some((line, text, is_toml)) = self.block.take() {
+                    let command = self.printed_by.take();
+                    self.page.outputs.extend(command.map(|command| Output {
+                        line,
+                        command,
+                        text: text.clone(),
+                    }));
                     let blocks = if is_toml { &mut self.page.tables } else { &mut self.page.blocks };
                     blocks.push((line, text));
                 }
@@ -89,6 +107,8 @@ impl Reader {
                 self.block.iter_mut().for_each(|(_, block, _)| block.push_str(&words));
             }
             Event::Html(html) | Event::InlineHtml(html) => {
+                let command = html.trim().strip_prefix("<!-- output of: ");
+                self.printed_by = command.and_then(|rest| Some(rest.strip_suffix("-->")?.trim().to_owned()));
                 let links = ["href", "src"].iter().flat_map(|name| attributes(&html, name));
                 self.page.links.extend(links.map(|link| (self.line, link)));
                 self.page.anchors.extend(attributes(&html, "id"));
