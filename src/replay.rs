@@ -11,8 +11,9 @@ driven by a motor with a stiffness, a damping and the joint's effort limit; it f
 program chooses in every state, inside the friction cones and the efforts. Nothing looks at where the object is. Between two segments the forces pass over to the fingers that hold next.\n\n\
 Reported for each segment: the largest deviation of the object from the plan, the largest slip of a fingertip, where the object is at the segment's end, and what went wrong. The object has \
 arrived if it is within 5 mm and 5° of the plan's end. It counts as dropped where it is 20 mm or 30° off; the replay ends there.\n\n\
-Plans rely on force closure with a friction that is a little below the object's, and some of their grasps need forces that the joints do not have, or that nearly slip. Plans that hold better: \
-`regrasp plan --use stability-test=equilibrium`, or `friction_margin = 0.9` under [limits.resolution] in the scenario.\n\n\
+Plans rely on force closure with 0.8 of the object's friction (`friction_margin` under [limits.resolution] in the scenario). Force closure knows no efforts: now and then a grasp of three fingers needs \
+forces that the joints do not have, or that nearly slip. `regrasp plan --use stability-test=equilibrium` plans with the weight and bounded forces.\n\n\
+The same replay in MuJoCo: `python3 tests/outside/mujoco_replay.py PLAN`.\n\n\
 Exit codes: 0 the object arrives; 2 bad input; 4 it does not.\n\n\
 Examples:\n  regrasp replay plan.json\n  regrasp replay plan.json --slowdown 4 --mass-scale 1.5\n  regrasp replay plan.json -o replay.json")]
 pub struct ReplayArgs {
