@@ -8,6 +8,7 @@ use regrasp::plan::{Extreme, Plan, Statistics, StoppedBy};
 use regrasp::planner::{Status, Stuck};
 use regrasp::study::scenario::Scenario;
 use regrasp::study::{Run, RunOptions};
+use regrasp::verify::Check;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
@@ -125,7 +126,14 @@ impl Summary<'_> {
         figure("clearance", &certificate.clearance, 1e3, " mm");
         figure("slip", &certificate.slip, 1e3, " mm");
         figure("closure", &certificate.closure_residual, 1e6, " µm");
-        text
+        text + &self.remarks()
+    }
+
+    /// What the verifier could not check although it found nothing wrong, such as the cones of a contact model that it does not know.
+    fn remarks(&self) -> String {
+        let checks = self.run.verdict.iter().flat_map(|verdict| &verdict.checks).filter(|check| check.ok);
+        let remark = |check: &Check| Some(format!("  {:<13} {}\n", check.name, check.place.note.as_ref()?));
+        checks.filter_map(remark).collect()
     }
 
     fn saved_line(&self) -> String {

@@ -37,6 +37,16 @@ fn every_role_compiles_passes_the_kit_loads_and_plans() {
 }
 
 #[test]
+fn what_the_verifier_takes_on_trust_is_said_with_the_plan() {
+    let library = written("contact-model");
+    let library = library.to_str().expect("the target folder is UTF-8");
+    let said = regrasp(&["plan", "sphere", "--load", library, "--use", "contact-model=mine"]);
+    assert!(said.out.contains("not independently checked: `contact-model/mine`"), "{said:?}");
+    let said = regrasp(&["plan", "sphere"]);
+    assert!(said.code == Some(0) && !said.out.contains("not independently checked"), "{said:?}");
+}
+
+#[test]
 fn settings_of_a_loaded_plugin_are_checked_like_any_others() {
     let library = written("contact-model");
     let library = library.to_str().expect("the target folder is UTF-8");

@@ -28,7 +28,7 @@ pub enum HostError {
         near: Vec<String>,
     },
     /// No plugin has this id in this slot.
-    #[error("there is no plugin `{id}` for `{}`; {}", .slot.name(), or_all(.near, .known))]
+    #[error("there is no plugin `{id}` for `{}`; {}{}", .slot.name(), or_all(.near, .known), or_load(.near))]
     UnknownPlugin {
         /// The slot that was to be filled.
         slot: Slot,
@@ -97,6 +97,11 @@ pub enum HostError {
 
 fn slot_names() -> Vec<String> {
     Slot::ALL.iter().map(|slot| slot.name().to_owned()).collect()
+}
+
+/// Where nothing linked resembles a name it may be that of a plugin in a library.
+fn or_load(near: &[String]) -> &'static str {
+    if near.is_empty() { "; a plugin from a library is there once that is loaded (`--load`)" } else { "" }
 }
 
 fn or_all(near: &[String], known: &[String]) -> String {

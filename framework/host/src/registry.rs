@@ -186,7 +186,7 @@ mod tests {
         let text = registry.lookup(Slot::StabilityTest, "alwys").err().unwrap().to_string();
         assert!(text.contains("did you mean `stability-test/always`?"), "{text}");
         let text = registry.lookup(Slot::StabilityTest, "xyz").err().unwrap().to_string();
-        assert!(text.contains("there are `stability-test/always`"), "{text}");
+        assert!(text.contains("there are `stability-test/always`") && text.contains("`--load`"), "{text}");
         let text = registry.lookup(Slot::TransferPlanner, "linear").err().unwrap().to_string();
         assert!(text.contains("it fits `local-planner.grasp`"), "{text}");
         let text = slot_by_name("samler").unwrap_err().to_string();
