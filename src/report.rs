@@ -131,9 +131,11 @@ impl Summary<'_> {
 
     /// What the verifier could not check although it found nothing wrong, such as the cones of a contact model that it does not know.
     fn remarks(&self) -> String {
-        let checks = self.run.verdict.iter().flat_map(|verdict| &verdict.checks).filter(|check| check.ok);
+        let checks = self.run.verdict.iter().flat_map(|verdict| &verdict.checks);
+        // Other notes belong to a place in the plan.
+        let of_the_whole = |check: &&Check| check.ok && check.place.segment.is_none();
         let remark = |check: &Check| Some(format!("  {:<13} {}\n", check.name, check.place.note.as_ref()?));
-        checks.filter_map(remark).collect()
+        checks.filter(of_the_whole).filter_map(remark).collect()
     }
 
     fn saved_line(&self) -> String {
