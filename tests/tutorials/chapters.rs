@@ -73,6 +73,20 @@ fn every_tutorial_shows_all_of_its_plugin() {
                 .filter(|anchor| !all.contains(&format!("{{{{#include {file}:{anchor}}}}}")))
                 .collect();
             assert!(hidden.is_empty(), "{file}: no chapter shows {hidden:?}");
+            assert_eq!(outside_of_anchors(&text), Vec::<&str>::new(), "{file}: no chapter can show this");
         }
     }
+}
+
+/// Lines of code that belong to no piece; what the file says of itself at its head aside.
+fn outside_of_anchors(text: &str) -> Vec<&str> {
+    let (mut inside, mut outside) = (false, Vec::new());
+    for line in text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//!")) {
+        match line.strip_prefix("// ANCHOR") {
+            Some(mark) => inside = mark.starts_with(':'),
+            None if !inside => outside.push(line),
+            None => {}
+        }
+    }
+    outside
 }
