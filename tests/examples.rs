@@ -133,3 +133,18 @@ fn examples_are_short_numbered_without_gaps_and_listed() {
     }
     assert_eq!(numbered().len(), 12);
 }
+
+#[test]
+fn the_list_shows_what_examples_print() {
+    let list = fs::read_to_string(folder().join("README.md")).expect("the examples have a list");
+    let blocks = list.split("```").skip(1).step_by(2);
+    let shown: Vec<(&str, &str)> = blocks
+        .filter_map(|block| block.trim().strip_prefix("$ cargo run --release --example ")?.split_once('\n'))
+        .collect();
+    assert!(shown.len() >= 3, "{shown:?}");
+    for (name, lines) in shown {
+        let said = run(name);
+        let wrong = lines.lines().find(|line| *line != "…" && !said.lines().any(|printed| printed == *line));
+        assert_eq!(wrong, None, "{name} does not print this line of examples/README.md:\n{said}");
+    }
+}
