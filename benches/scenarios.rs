@@ -1,41 +1,29 @@
 //! Whole planning runs: every built-in scenario, one thread, planning alone, a different seed each time.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use regrasp::host::Registry;
-use regrasp::planner::{Clock, Silent, Status};
-use regrasp::study::scenario::{self, SCENARIOS};
-use regrasp::study::{NeverStops, RunOptions, Setup};
+use regrasp::Stopwatch;
+use regrasp::planner::Status;
+use regrasp::study::Setup;
+use regrasp::study::scenario::SCENARIOS;
 use std::hint::black_box;
-use std::time::{Duration, Instant};
-
-struct Watch(Instant);
-
-impl Clock for Watch {
-    fn seconds(&self) -> f64 {
-        self.0.elapsed().as_secs_f64()
-    }
-}
+use std::time::Duration;
 
 /// The seeds that the runs go through, again and again.
 const SEEDS: u64 = 20;
 
 /// Seconds of planning; the verification that follows is not counted.
 fn planning(setup: &Setup<'_>, seed: u64) -> f64 {
-    let watch = Watch(Instant::now());
-    let options = RunOptions { seed, threads: 1, stop: &NeverStops, clock: &watch, progress: &Silent };
-    let run = setup.run(&options).expect("the built-in scenarios are sound");
+    let run = setup.run(&Stopwatch::start().options(seed)).expect("the built-in scenarios are sound");
     assert_eq!(run.outcome.status, Status::Solved);
     black_box(run.planning_s)
 }
 
 fn scenarios(criterion: &mut Criterion) {
-    let registry = Registry::linked().expect("the built-in plugins have different ids");
     let mut group = criterion.benchmark_group("plan");
     group.sample_size(20).measurement_time(Duration::from_secs(4));
     for file in SCENARIOS {
-        let scenario = scenario::load(file.name, &registry).expect("the built-in scenarios are sound");
-        let setup =
-            Setup::new(&scenario, &scenario.choices, &registry).expect("the built-in scenarios are sound");
+        let scenario = regrasp::load(file.name).expect("the built-in scenarios are sound");
+        let setup = regrasp::setup(&scenario).expect("the built-in scenarios are sound");
         let mut seeds = (0..SEEDS).cycle();
         group.bench_function(file.name, |bencher| {
             bencher.iter_custom(|runs| {
