@@ -47,5 +47,7 @@ fn page(command: Command) -> Result<String, Failure> {
     let mut text = Vec::new();
     let man = Man::new(command).source(concat!("regrasp ", env!("CARGO_PKG_VERSION"))).manual("Regrasp");
     man.render(&mut text).map_err(Failure::bad_input)?;
-    Ok(String::from_utf8_lossy(&text).replace(".SH EXTRA\n", ".SH NOTES AND EXAMPLES\n"))
+    let text = String::from_utf8_lossy(&text).replace(".SH EXTRA\n", ".SH NOTES AND EXAMPLES\n");
+    // A page without a date says so with an empty word, or else the version would be taken for it.
+    Ok(text.replacen(" 1  \"", " 1 \"\" \"", 1))
 }

@@ -116,17 +116,16 @@ pub fn bare(entry: &Entry) -> &'static str {
     entry.id.split_once('/').map_or(entry.id, |(_, name)| name)
 }
 
-/// The table of a scenario that chooses the plugin, with all its settings.
+/// The table of a scenario that chooses the plugin, with all its settings at their defaults; those that have none are commented out.
 pub fn in_scenario(entry: &Entry, schema: &Value) -> String {
     let slot = entry.slots.first().map_or("", |slot| slot.name());
-    let values = properties(schema).filter_map(|(key, property)| Some((key, value(property)?)));
-    let lines: String = values.map(|(key, value)| format!("{key} = {value}\n")).collect();
+    let line = |(key, property): (&String, Property<'_>)| match (property.default(), property.example()) {
+        (default, _) if !default.is_empty() => format!("{key} = {default}\n"),
+        (_, Some(example)) => format!("# {key} = {example}\n"),
+        (_, None) => String::new(),
+    };
+    let lines: String = properties(schema).map(line).collect();
     format!("[plugins.{slot}]\nuse = \"{}\"\n{lines}", bare(entry))
-}
-
-/// A setting's default; where there is none, its example.
-fn value(property: Property<'_>) -> Option<String> {
-    Some(property.default()).filter(|text| !text.is_empty()).or_else(|| property.example())
 }
 
 /// The command that plans with the plugin, and sets its first setting.
@@ -136,8 +135,9 @@ pub fn on_command_line(entry: &Entry, schema: &Value) -> String {
     let made_for = SCENARIOS.iter().find(|file| file.text.contains(&format!("use = \"{}\"", entry.id)));
     let scenario = made_for.map_or("sphere", |file| file.name);
     let set = properties(schema).find_map(|(key, property)| {
-        let value = value(property).filter(|value| !value.contains([' ', '"', '{']))?;
-        Some(format!(" --set {slot}.{key}={value}"))
+        let value = property.default();
+        let plain = !value.is_empty() && !value.contains([' ', '"', '{']);
+        plain.then(|| format!(" --set {slot}.{key}={value}"))
     });
     format!("regrasp plan {scenario} --use {slot}={}{}", bare(entry), set.unwrap_or_default())
 }

@@ -78,6 +78,7 @@ fn the_manual_has_a_page_for_every_command() {
     };
     let program = read("regrasp.1");
     assert!(program.starts_with(".ie ") || program.contains(".TH regrasp 1"), "{program}");
+    assert!(program.contains(".TH regrasp 1 \"\" \"regrasp "), "{program}");
     assert_eq!(program, printed(folder.path(), "man"));
     for command in commands() {
         let name = command.replace('-', "\\-");

@@ -38,9 +38,11 @@ pub struct WrenchBallSettings {
     pub least_margin: f64,
     /// Edges that replace a round cone, from inside, 3 to 64; default none: round cones as they are.
     #[schemars(range(min = 3, max = 64))]
+    #[schemars(example = 8)]
     pub cone_edges: Option<usize>,
     /// What torques are divided by (m), 1e-4 to 1e3; default none: the largest distance of a contact from their centroid.
     #[schemars(range(min = 1e-4, max = 1e3))]
+    #[schemars(example = 0.03)]
     pub length: Option<f64>,
     /// The point that torques are taken about; default the contacts' centroid.
     pub center: Center,

@@ -36,12 +36,15 @@ pub struct RapierCheckedSettings {
     pub damping_time: f64,
     /// Friction coefficient in the simulation, 0 to 10; the object's own where absent. The forces are planned for the object's own.
     #[schemars(range(min = 0.0, max = 10.0))]
+    #[schemars(example = 0.8)]
     pub friction: Option<f64>,
     /// Mass of the simulated object (kg), 1e-6 to 1e6; its own where absent. The forces are planned for its own.
     #[schemars(range(min = 1e-6, max = 1e6))]
+    #[schemars(example = 0.1)]
     pub mass: Option<f64>,
     /// Most normal force of one contact (N), 0.01 to 1e4; where absent the greater of 2 N and three times the object's weight.
     #[schemars(range(min = 0.01, max = 1e4))]
+    #[schemars(example = 5.0)]
     pub grip: Option<f64>,
     /// What part of its effort limit a joint may use to hold the object, 0.01 to 1; the rest is for motion and correction.
     #[schemars(range(min = 0.01, max = 1.0))]
