@@ -5,11 +5,16 @@ use regrasp::api::Interrupt;
 use regrasp::plan::StoppedBy;
 use regrasp::planner::Clock;
 use regrasp::study::Stop;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Set by Ctrl-C; signals know no object to set it in.
 static CTRL_C: AtomicBool = AtomicBool::new(false);
+/// When it was set.
+static FIRST: OnceLock<Instant> = OnceLock::new();
+/// Signals that come closer together are one: `timeout` and others send theirs to the process and to its group.
+const SAME: Duration = Duration::from_millis(300);
 
 /// A stopwatch that Ctrl-C stops, too.
 pub struct Watch(Stopwatch);
@@ -19,7 +24,8 @@ impl Watch {
     pub fn start(limit_s: Option<f64>) -> Self {
         // Without a handler Ctrl-C ends the program, which is what it does by default.
         let _ = ctrlc::set_handler(|| {
-            if CTRL_C.swap(true, Ordering::SeqCst) {
+            let since = FIRST.get_or_init(Instant::now).elapsed();
+            if CTRL_C.swap(true, Ordering::SeqCst) && since > SAME {
                 std::process::exit(130);
             }
         });
