@@ -79,6 +79,19 @@ fn plans_whose_grasps_hold_the_weight_arrive() {
     }
 }
 
+/// By default plans know nothing of weight and efforts: a few in a hundred fall.
+#[test]
+fn nearly_all_default_plans_arrive() {
+    for name in ["sphere", "cubic"] {
+        let arrived = (0..8).filter(|&seed| {
+            let plan = plan(name, seed, &[]).plan.expect("it is solved");
+            replayed(&plan, &ReplaySettings::default()).arrived
+        });
+        let count = arrived.count();
+        assert!(count >= 7, "{name}: {count} of 8");
+    }
+}
+
 #[test]
 fn the_same_plan_falls_where_friction_is_far_lower_or_the_object_far_heavier() {
     let plan = balanced("sphere", 1);
