@@ -202,7 +202,7 @@ fn the_box_of_a_last_link_ends_where_the_link_is_seen_to_end() {
     assert_eq!(shapes.len(), 2, "{shapes:?}");
     let height = shapes[0]["shape"]["size"][2].as_f64().unwrap();
     assert!((height - 0.040).abs() < 1e-9, "{height}");
-    assert_eq!(shapes[1]["shape"]["kind"], "mesh");
+    assert_eq!(shapes[1]["shape"]["kind"], "capsule");
 }
 
 #[test]

@@ -42,6 +42,12 @@ impl Piece {
         Self::new(Shape::Box { size: (half * 2.0).into() }, X_BS, &corners, 0.0)
     }
 
+    /// All within `radius` of the line between two points, in B (m).
+    pub fn capsule([from, to]: [Vec3; 2], radius: f64) -> Self {
+        let shape = Shape::Capsule { from: from.into(), to: to.into(), radius };
+        Self { shape, X_BS: Pose::identity(), corners: vec![from, to], radius }
+    }
+
     /// A convex mesh, in B.
     pub fn of_mesh(mesh: &Mesh) -> Self {
         let shape = Shape::Mesh(in_memory(mesh));

@@ -257,8 +257,7 @@ fn rod_below(piece: Piece, n: &Vec3, height: f64) -> Option<Piece> {
         return None;
     }
     let to = crossing(&from, &to, n, height).unwrap_or(to);
-    let shape = Shape::Capsule { from: from.into(), to: to.into(), radius: piece.radius };
-    Some(Piece { shape, X_BS: Pose::identity(), corners: vec![from, to], radius: piece.radius })
+    Some(Piece::capsule([from, to], piece.radius))
 }
 
 /// Where a line between two points crosses the plane n · x = height, if it does.

@@ -4,6 +4,9 @@ use super::document::{Joint, Link, Model};
 use super::error::Fault;
 use std::collections::{BTreeMap, BTreeSet};
 
+/// The most links of a file.
+const MOST_LINKS: usize = 1000;
+
 /// A model whose links form one tree.
 #[derive(Debug)]
 pub(super) struct Tree<'m> {
@@ -25,6 +28,13 @@ impl<'m> Tree<'m> {
         let joints = index(model.joints.iter().map(|joint| (joint.name.as_str(), joint.line)), "joint")?;
         if model.links.is_empty() {
             return Err(Fault::of_file("there is no <link>; is this the URDF of a hand?"));
+        }
+        if model.links.len() > MOST_LINKS {
+            let message = format!(
+                "{} links are more than the {MOST_LINKS} that any robot with hands has",
+                model.links.len()
+            );
+            return Err(Fault::of_file(message));
         }
         let mut above = vec![None; model.links.len()];
         let mut below = vec![Vec::new(); model.links.len()];

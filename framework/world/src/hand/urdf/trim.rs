@@ -4,14 +4,10 @@
 //! than it there: on flat faces the box would touch first. Where the visual shapes show that the link ends farther back, and that the tip's own
 //! shape goes on from there, they are believed.
 
-use super::hull;
 use super::solids::Piece;
 use super::tip::{CLEARANCE, Tip};
-use regrasp_api::{Vec3, any_orthogonal};
-use std::f64::consts::TAU;
+use regrasp_api::Vec3;
 
-/// Sides of the prism that stands for the tip behind its ball's centre.
-const SIDES: usize = 16;
 /// How far (m) the seen shapes of link and tip may be apart and still count as one.
 const JOINT: f64 = 1e-3;
 
@@ -24,10 +20,10 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// `behind`, the collision shapes of the links behind the ball, cut where those links are seen to end, and a prism for the tip in its place.
+    /// `behind`, the collision shapes of the links behind the ball, cut where those links are seen to end, and a capsule for the tip in its place.
     ///
-    /// The prism lies inside of the tip as it is seen, by what planning keeps between bodies: on a face that is parallel to the finger the ball
-    /// still touches, not the prism. Shapes that tell nothing else leave `behind` as it is.
+    /// The capsule lies inside of the tip as it is seen, by what planning keeps between bodies: on a face that is parallel to the finger the ball
+    /// still touches, not the capsule. Shapes that tell nothing else leave `behind` as it is.
     pub fn trimmed(
         &self,
         tip: &Tip,
@@ -46,10 +42,10 @@ impl Seen {
         let mut kept: Vec<Piece> =
             behind.into_iter().filter_map(|piece| super::tip::below(piece, &n, end)).collect();
         let width = self.width(tip).min(radius - CLEARANCE);
-        kept.extend(prism(tip, width, height - end));
+        kept.push(rod(tip, width, height - end));
         notes.push(format!(
             "the last link of `{name}` is cut {:.1} mm behind the ball's centre, where its visual shape ends; from there on the tip's own is \
-             seen, for which a prism of {:.1} mm radius stands",
+             seen, for which a capsule of {:.1} mm radius stands",
             1e3 * (height - end),
             1e3 * width
         ));
@@ -75,15 +71,8 @@ fn reach(pieces: &[Piece], n: &Vec3) -> f64 {
     pieces.iter().map(|piece| piece.reach(n)).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// From the ball's centre back by `length`, its corners at `radius` (m).
-fn prism(tip: &Tip, radius: f64, length: f64) -> Option<Piece> {
-    let side = any_orthogonal(&tip.outward);
-    let other = tip.outward.cross(&side);
-    let corner = |i: usize| {
-        let (sin, cos) = ((i % SIDES) as f64 * TAU / SIDES as f64).sin_cos();
-        let back = if i < SIDES { 0.0 } else { length };
-        tip.center + (side * cos + other * sin) * radius - tip.outward * back
-    };
-    let corners: Vec<Vec3> = (0..2 * SIDES).map(corner).collect();
-    hull::hull(&corners).map(|mesh| Piece::of_mesh(&mesh))
+/// From the ball's centre back by `length`, `radius` wide (m); its round end lies in the link, where it does no harm.
+fn rod(tip: &Tip, radius: f64, length: f64) -> Piece {
+    let ends = [tip.center, tip.center - tip.outward * length];
+    Piece::capsule(ends, radius)
 }
