@@ -195,7 +195,7 @@ fn the_box_of_a_last_link_ends_where_the_link_is_seen_to_end() {
     let report = said.json();
     let notes = report["report"]["notes"].to_string();
     assert!(
-        notes.contains("`f0_tip` is cut 10.0 mm behind the ball's centre") && notes.contains("7.5 mm radius"),
+        notes.contains("`f0_tip` is cut 10.0 mm behind the ball's centre") && notes.contains("7.4 mm radius"),
         "{notes}"
     );
     let shapes = report["hand"]["finger"][0]["joint"][2]["link"].as_array().unwrap().clone();

@@ -8,6 +8,8 @@ use super::solids::Piece;
 use super::tip::{CLEARANCE, Tip};
 use regrasp_api::Vec3;
 
+/// By how much (m) more than what planning keeps the capsule lies inside of the ball: at every contact, this is all the room it has.
+const SPARE: f64 = 1e-4;
 /// How far (m) the seen shapes of link and tip may be apart and still count as one.
 const JOINT: f64 = 1e-3;
 
@@ -41,7 +43,7 @@ impl Seen {
         }
         let mut kept: Vec<Piece> =
             behind.into_iter().filter_map(|piece| super::tip::below(piece, &n, end)).collect();
-        let width = self.width(tip).min(radius - CLEARANCE);
+        let width = self.width(tip).min(radius - CLEARANCE - SPARE);
         kept.push(rod(tip, width, height - end));
         notes.push(format!(
             "the last link of `{name}` is cut {:.1} mm behind the ball's centre, where its visual shape ends; from there on the tip's own is \
