@@ -43,7 +43,7 @@ fn stages(motion: &Motion) -> Vec<Stage<'_>> {
 }
 
 fn replayed(plan: &Plan, settings: &ReplaySettings) -> ReplayReport {
-    let motion = regrasp::plan::motion(&plan).unwrap();
+    let motion = regrasp::plan::motion(plan).unwrap();
     replay(&plan.scenario.problem, Path::new(""), &stages(&motion), settings).unwrap()
 }
 

@@ -1,6 +1,6 @@
 //! A motion while it is being smoothed: its segments, its stations, and where its goals are.
 
-use regrasp_api::Configuration;
+use regrasp_api::{Configuration, Rotation};
 use regrasp_plan::{Segment, SegmentKind};
 
 /// A goal in a motion: the boundary between segments at which the object is there.
@@ -73,6 +73,20 @@ impl Draft {
             let at_an_end = mark.boundary <= from.end || mark.boundary >= to.start;
             inside && (mark.grasp_given || !at_an_end)
         })
+    }
+
+    /// Gives every orientation that of its two quaternions which is nearer to the one before: q and -q turn the object alike, but a plan
+    /// holds numbers, and segments share theirs exactly.
+    pub fn align_quaternions(&mut self) {
+        let mut states = self.segments.iter_mut().flat_map(|segment| &mut segment.states);
+        let Some(mut before) = states.next().map(|q| q.X_HO.rotation) else { return };
+        for q in states {
+            let rotation = &mut q.X_HO.rotation;
+            if before.coords.dot(&rotation.coords) < 0.0 {
+                *rotation = Rotation::new_unchecked(-rotation.into_inner());
+            }
+            before = *rotation;
+        }
     }
 
     /// Replaces the segments of `old`, which end with a station, by others between the same poses; the goals move with them.
@@ -153,6 +167,20 @@ mod tests {
             draft.trim_end();
             assert_eq!((draft.segments.len(), draft.marks[0].boundary), (left, left));
         }
+    }
+
+    #[test]
+    fn one_orientation_has_one_quaternion_throughout() {
+        let mut draft = draft(vec![]);
+        for (k, segment) in draft.segments.iter_mut().enumerate() {
+            let turned = Rotation::from_axis_angle(&Vec3::z_axis(), 0.3 * k as f64);
+            let quaternion = if k % 2 == 0 { turned.into_inner() } else { -turned.into_inner() };
+            segment.states.iter_mut().for_each(|q| q.X_HO.rotation = Rotation::new_unchecked(quaternion));
+        }
+        let before = draft.clone();
+        draft.align_quaternions();
+        assert!(draft.segments.iter().flat_map(|segment| &segment.states).all(|q| q.X_HO.rotation.w > 0.0));
+        assert_eq!(draft.segments, before.segments, "the orientations are the same");
     }
 
     #[test]

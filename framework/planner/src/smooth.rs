@@ -140,10 +140,11 @@ impl Smoother<'_> {
         } else {
             steps::transfer_then_regrasp(session, task, &there, to, context)?
         };
-        Ok(rest.map(|rest| {
-            segments.extend(rest);
-            segments
-        }))
+        let Some(rest) = rest else { return Ok(None) };
+        segments.extend(rest);
+        // Where the object is already there it does not move; a shortcut without any motion would leave a motion without segments.
+        segments.retain(|segment| segment.states.len() > 1);
+        Ok(Some(segments).filter(|segments| !segments.is_empty()))
     }
 
     /// The configuration in which a shortcut leaves its first station.

@@ -284,6 +284,7 @@ impl Run<'_> {
             Ok(()) | Err(CallError::Interrupted) => {}
             Err(error) => return Err(error.into()),
         }
+        self.draft.align_quaternions();
         let mut motion = Motion { segments: std::mem::take(&mut self.draft.segments) };
         self.timed("timing", |run| assign_times(&mut motion, run.request.hand, &TimingLimits::default()))?;
         self.statistics.regrasps = regrasps(&motion.segments);

@@ -29,7 +29,7 @@ fn names(verdict: &Verdict) -> Vec<&'static str> {
 fn with_motion(make: impl FnOnce(&ChainHand, &mut Motion)) -> Verdict {
     judged(|plan| {
         let hand = ChainHand::new(plan.scenario.problem.hand.clone()).unwrap();
-        let mut motion = regrasp_plan::motion(&plan).unwrap();
+        let mut motion = regrasp_plan::motion(plan).unwrap();
         make(&hand, &mut motion);
         assign_times(&mut motion, &hand, &TimingLimits::default()).unwrap();
         plan.segments = records(&motion, &hand).unwrap();

@@ -69,7 +69,9 @@ impl StabilityCheck {
         }
         let cone = claims.contact.cone.filter(valid).filter(|_| known);
         if claims.contact.cone.is_none() {
-            gauge.remark("not independently checked: the plan claims no elliptic cone that all its contacts share");
+            gauge.remark(
+                "not independently checked: the plan claims no elliptic cone that all its contacts share",
+            );
         } else if cone.is_none() && known {
             gauge.note(f64::NAN, || Place {
                 note: Some("the claimed cone has no meaning".into()),
