@@ -4,7 +4,7 @@
 mod support;
 
 use regrasp_api::*;
-use regrasp_conformance::fixtures::{four_finger, free_fingertips};
+use regrasp_conformance::fixtures::{four_finger, free_fingertips, three_finger};
 use regrasp_conformance::reference::{EdgeClosure, FineRolling, GraspLine, LiftOver};
 use regrasp_world::ChainHand;
 
@@ -52,7 +52,11 @@ struct Liar {
 /// The kit's hand with joints that move farther.
 fn wide(hand: &dyn Hand) -> ChainHand {
     let prismatic = hand.finger(FingerIndex(0)).joints[0].kind == JointKind::Prismatic;
-    let mut description = if prismatic { free_fingertips() } else { four_finger() };
+    let mut description = match hand.finger_count() {
+        _ if prismatic => free_fingertips(),
+        3 => three_finger(),
+        _ => four_finger(),
+    };
     description.fingertip = hand.fingertip();
     for joint in description.finger.iter_mut().flat_map(|finger| &mut finger.joint) {
         (joint.lower, joint.upper) = (joint.lower - 0.05, joint.upper + 0.05);
