@@ -467,7 +467,7 @@ def browser_seconds():
     return sum(ticks for process, ticks in spent.items() if ours(process)) / os.sysconf("SC_CLK_TCK")
 
 
-def test_two_thousand_states_are_soon_ready_and_play(folder, plan, tmp_path, regrasp, visit):
+def test_two_thousand_states_are_ready_in_a_second_and_play_smoothly(folder, plan, tmp_path, regrasp, visit):
     plan = finer(plan, 2000)
     (tmp_path / "long.json").write_text(json.dumps(plan))
     regrasp("view", "long.json", cwd=tmp_path)
@@ -479,7 +479,7 @@ def test_two_thousand_states_are_soon_ready_and_play(folder, plan, tmp_path, reg
     for _ in range(3):
         seen = ready(visit, page, **MODEST)
         waits.append(seen.page.evaluate("regrasp.readyMs"))
-    assert min(waits) < 10_000
+    assert min(waits) < 1000
     seen.page.evaluate("regrasp.app.player.setSpeed(0.25)")
     seen.page.evaluate("window.drawn = 0; (function next() { window.drawn++; requestAnimationFrame(next); })()")
     seen.page.evaluate("regrasp.play()")
@@ -493,6 +493,7 @@ def test_two_thousand_states_are_soon_ready_and_play(folder, plan, tmp_path, reg
         f"\n{size / 1e6:.1f} MB, ready in {min(waits):.0f} ms; at {MODEST['width']} x {MODEST['height']} {frames / 4:.0f} frames a second, "
         f"{1000 * cost:.0f} ms of processor time each"
     )
-    # What is printed is to be read (aimed at: ready in a second, 33 ms a frame); how fast the machine is that runs this test, nobody knows.
-    assert frames > 0
+    # The rate depends on what else the machine does, the processor time of a frame hardly: two idle cores that draw 30 frames a second
+    # may spend 67 ms on each.
+    assert cost < 2 / 30
     quiet(seen, page)
