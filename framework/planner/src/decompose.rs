@@ -57,7 +57,6 @@ fn advance(
             let there = steps::end(&segment);
             if let Some(regrasps) = steps::regrasp_all(session, task, there, &states[next], context)? {
                 let mut segments = vec![segment];
-                segments.retain(|segment| segment.states.len() > 1);
                 segments.extend(regrasps);
                 return Ok(Some((next, segments)));
             }

@@ -1,5 +1,6 @@
 //! A motion while it is being smoothed: its segments, its stations, and where its goals are.
 
+use crate::steps::moves;
 use regrasp_api::{Configuration, Rotation};
 use regrasp_plan::{Segment, SegmentKind};
 
@@ -89,8 +90,9 @@ impl Draft {
         }
     }
 
-    /// Replaces the segments of `old`, which end with a station, by others between the same poses; the goals move with them.
-    pub fn replace(&mut self, old: std::ops::Range<usize>, segments: Vec<Segment>) {
+    /// Replaces the segments of `old`, which end with a station, by those of others between the same poses that move; the goals move with them.
+    pub fn replace(&mut self, old: std::ops::Range<usize>, mut segments: Vec<Segment>) {
+        segments.retain(moves);
         let (start, end) = (old.start, old.end);
         let last_station =
             self.stations().into_iter().find(|station| station.end == end).map_or(end, |s| s.start);
@@ -181,6 +183,16 @@ mod tests {
         draft.align_quaternions();
         assert!(draft.segments.iter().flat_map(|segment| &segment.states).all(|q| q.X_HO.rotation.w > 0.0));
         assert_eq!(draft.segments, before.segments, "the orientations are the same");
+    }
+
+    #[test]
+    fn rests_are_left_out() {
+        let mut draft = draft(vec![Mark { boundary: 3, grasp_given: false }]);
+        let mut rest = segment(SegmentKind::Transfer, (0.0, 0), (0.0, 0));
+        rest.states.truncate(1);
+        draft.replace(0..2, vec![rest, segment(SegmentKind::Transfer, (0.0, 0), (1.0, 2))]);
+        assert_eq!((draft.segments.len(), draft.marks[0].boundary), (5, 2));
+        assert!(draft.segments.iter().all(moves));
     }
 
     #[test]

@@ -97,9 +97,7 @@ fn regrasp_at(
     let (from, to) = (steps::end(&first), steps::end(&last));
     let Some(regrasps) = steps::regrasp_all(session, task, from, to, context)? else { return Ok(None) };
     let back = steps::reversed(vec![last]);
-    let mut all: Vec<_> = [first].into_iter().chain(regrasps).chain(back).collect();
-    all.retain(|segment| segment.states.len() > 1);
-    Ok(Some(all))
+    Ok(Some([first].into_iter().chain(regrasps).chain(back).collect()))
 }
 
 #[cfg(test)]

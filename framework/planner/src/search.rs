@@ -287,7 +287,7 @@ impl Search<'_> {
             let steps = self.graph.steps(step.edge).expect("every edge of the path was decomposed").to_vec();
             if step.forward { steps } else { steps::reversed(steps) }
         };
-        path.iter().flat_map(steps_of).collect()
+        path.iter().flat_map(steps_of).filter(steps::moves).collect()
     }
 
     /// Another grasp at the goal's pose from time to time: the ones that were found may all be bad ones.

@@ -142,9 +142,8 @@ impl Smoother<'_> {
         };
         let Some(rest) = rest else { return Ok(None) };
         segments.extend(rest);
-        // Where the object is already there it does not move; a shortcut without any motion would leave a motion without segments.
-        segments.retain(|segment| segment.states.len() > 1);
-        Ok(Some(segments).filter(|segments| !segments.is_empty()))
+        // Without any motion there would be no segment left to smooth.
+        Ok(Some(segments).filter(|segments| segments.iter().any(steps::moves)))
     }
 
     /// The configuration in which a shortcut leaves its first station.

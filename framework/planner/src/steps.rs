@@ -8,7 +8,7 @@ use regrasp_api::{
 };
 use regrasp_plan::{Segment, SegmentKind};
 
-/// Rolls the object towards a pose, and stores the motion as a segment if it moved at all.
+/// Rolls the object towards a pose. The segment has one state where it did not move: a motion leaves such rests out ([`moves`]).
 pub(crate) fn transfer(
     session: &Session<'_>,
     task: &Task<'_>,
@@ -43,6 +43,11 @@ pub(crate) fn transfer_then_regrasp(
     let Some(regrasps) = regrasp_all(session, task, &there, to, context)? else { return Ok(None) };
     steps.extend(regrasps);
     Ok(Some(steps))
+}
+
+/// Whether anything moves in a segment.
+pub(crate) fn moves(segment: &Segment) -> bool {
+    segment.states.len() > 1
 }
 
 /// The configuration in which a segment ends.

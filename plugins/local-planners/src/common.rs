@@ -22,13 +22,13 @@ pub(crate) fn wrong_target(plugin: &str, slot: Slot) -> CallError {
 /// Off an edge whose facets' normals differ by θ, a second place comes closest if its gap is below 1 mm · (1 - cos θ): for each jump of
 /// the contact over more than a plan's closure the fingertip then is some micrometres to the side of where it would happen, which is what
 /// motions between two states stray. Our choice.
-const OFF: f64 = 1e-3;
+const PROBE_LIFT: f64 = 1e-3;
 
 /// Whether a fingertip's ball of `radius` (m) touches here alone. In a hollow it may touch at two places, or nearly; then which of the two is the
 /// contact is a matter of rounding, and the contact may jump from one to the other.
 /// Two places closer together than half of `closure` (m) are one.
 pub(crate) fn touches_once(surface: &dyn SurfaceParam, contact: &Contact, radius: f64, closure: f64) -> bool {
-    let off = surface.project(&contact.tip_center(radius + OFF), Some(contact.facet)).contact;
+    let off = surface.project(&contact.tip_center(radius + PROBE_LIFT), Some(contact.facet)).contact;
     (off.p_OC - contact.p_OC).norm() <= 0.5 * closure
 }
 

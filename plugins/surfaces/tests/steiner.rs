@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{length, meshes, path, reference};
+use common::{anywhere, length, meshes, path, reference};
 use regrasp_api::{BuildError, Contact, Mesh, Random, Settings, SurfaceParam, Vec3};
 use regrasp_surfaces::geodesic::{Geodesic, GeodesicSettings};
 use regrasp_surfaces::steiner::{Steiner, SteinerSettings};
@@ -31,16 +31,6 @@ fn solids() -> Vec<Mesh> {
         meshes::torus(0.03, 0.012, 12, 8),
         meshes::bumpy(0.03, 0.15, 2),
     ]
-}
-
-/// A random point of the surface: inside a facet, on an edge or at a vertex.
-fn anywhere(mesh: &Mesh, random: &mut Random) -> Contact {
-    let facet = random.index(mesh.facets().len()) as u32;
-    let [a, b, c] = mesh.corners(facet);
-    let (t, kind) = (random.unit(), random.index(6));
-    let s = if kind > 1 { random.unit() * (1.0 - t) } else { 0.0 };
-    let p_OC = if kind == 0 { a } else { a * (1.0 - s - t) + b * t + c * s };
-    Contact { facet, p_OC, n_O: mesh.normal(facet) }
 }
 
 #[test]
