@@ -4,9 +4,11 @@
 //! off and try again. Nothing guarantees success: the caller deletes the edge then. Greedy needs fewer regrasps
 //! than bisection at the same success rate.
 
-use crate::session::Session;
-use crate::steps;
-use regrasp_api::{CallError, Configuration, Context, Path, Target, Task};
+use crate::order::regrasp_all;
+use crate::segments::{end, farthest};
+use crate::session::Work;
+use crate::steps::{rolled_to, transfer};
+use regrasp_api::{CallError, Configuration, Path, Target};
 use regrasp_plan::Segment;
 
 /// What is kept of the rolled way where the regrasps at its end fail.
@@ -14,14 +16,13 @@ const BACK_OFF: f64 = 0.7;
 
 /// Executable steps from `from` to `to`, which a path in GS_n joins; `None` if the decomposition fails.
 pub(crate) fn decompose(
-    session: &Session<'_>,
-    task: &Task<'_>,
+    work: &mut Work<'_>,
     from: &Configuration,
     to: &Configuration,
-    context: &mut Context<'_>,
 ) -> Result<Option<Vec<Segment>>, CallError> {
     let mut path = Path::default();
-    let reached = session.drivers.grasp.connect(task, from, &Target::Grasp(to), Some(&mut path), context)?;
+    let target = Target::Grasp(to);
+    let reached = work.plugins.grasp.connect(work.task, from, &target, Some(&mut path), &mut work.context)?;
     if !reached.is_complete() {
         return Ok(None);
     }
@@ -29,7 +30,7 @@ pub(crate) fn decompose(
     let last = states.len() - 1;
     let (mut at, mut all) = (0, Vec::new());
     while at < last {
-        match advance(session, task, states, at, context)? {
+        match advance(work, states, at)? {
             Some((next, segments)) => {
                 all.extend(segments);
                 at = next;
@@ -42,20 +43,18 @@ pub(crate) fn decompose(
 
 /// One transfer from state `at` and the regrasps after it: the index of the state reached, and the segments.
 fn advance(
-    session: &Session<'_>,
-    task: &Task<'_>,
+    work: &mut Work<'_>,
     states: &[Configuration],
     at: usize,
-    context: &mut Context<'_>,
 ) -> Result<Option<(usize, Vec<Segment>)>, CallError> {
     let last = states.len() - 1;
-    let (reached, mut rolled) = steps::transfer(session, task, &states[at], &states[last].X_HO, context)?;
-    let mut next = if reached.is_complete() { last } else { steps::farthest(states, at, &reached.end.X_HO) };
+    let (reached, mut rolled) = transfer(work, &states[at], &states[last].X_HO)?;
+    let mut next = if reached.is_complete() { last } else { farthest(states, at, &reached.end.X_HO) };
     while next > at {
-        context.proceed()?;
-        if let Some(segment) = steps::rolled_to(session, task, &mut rolled, &states[next].X_HO, context)? {
-            let there = steps::end(&segment);
-            if let Some(regrasps) = steps::regrasp_all(session, task, there, &states[next], context)? {
+        work.context.proceed()?;
+        if let Some(segment) = rolled_to(work, &mut rolled, &states[next].X_HO)? {
+            let there = end(&segment);
+            if let Some(regrasps) = regrasp_all(work, there, &states[next])? {
                 let mut segments = vec![segment];
                 segments.extend(regrasps);
                 return Ok(Some((next, segments)));

@@ -1,6 +1,6 @@
 //! A motion while it is being smoothed: its segments, its stations, and where its goals are.
 
-use crate::steps::moves;
+use crate::segments::moves;
 use regrasp_api::{Configuration, Rotation};
 use regrasp_plan::{Segment, SegmentKind};
 

@@ -2,11 +2,11 @@
 
 use crate::error::{End, PlanError, explain};
 use crate::foresight::outlook;
-use crate::query::Length;
-use crate::session::{Call, Session};
+use crate::session::{Call, Session, Work};
+use crate::shortest_path::Length;
 use regrasp_api::{
-    CallError, Configuration, Contact, Context, FingerGrasp, FingerIndex, FingerJoints, FingerSet,
-    GraspContact, PerFinger, Pose, PoseRequest, Tally, Task,
+    CallError, Configuration, Contact, FingerGrasp, FingerIndex, FingerJoints, FingerSet, GraspContact,
+    PerFinger, Pose, PoseRequest, Tally, Task,
 };
 
 /// How far a given contact point may lie from the surface (m).
@@ -18,12 +18,12 @@ const GRASP_CALLS: u64 = 40;
 
 /// The configuration of a grasp that the problem gives, checked: reach, limits, collision, stability.
 pub(crate) fn given(
-    task: &Task<'_>,
+    work: &mut Work<'_>,
     end: End,
     X_HO: Pose,
     grasp: &[FingerGrasp],
-    context: &mut Context<'_>,
 ) -> Result<Configuration, PlanError> {
+    let task = work.task;
     let count = task.hand.finger_count();
     if grasp.len() != count {
         let reason = format!(
@@ -44,7 +44,7 @@ pub(crate) fn given(
     }
     let all = FingerSet::first(count);
     task.clearance.configuration_free(&q, all, true).map_err(|pair| PlanError::Collision { end, pair })?;
-    if !stable(task, &q, context)? {
+    if !stable(work, &q)? {
         return Err(PlanError::Unstable { end, friction: task.object.friction });
     }
     Ok(q)
@@ -98,7 +98,8 @@ fn on_surface(task: &Task<'_>, p_OC: regrasp_api::Vec3) -> Result<Contact, Strin
 }
 
 /// Whether the grasp is stable with the object's own friction (no planner's margin).
-fn stable(task: &Task<'_>, q: &Configuration, context: &mut Context<'_>) -> Result<bool, CallError> {
+fn stable(work: &mut Work<'_>, q: &Configuration) -> Result<bool, CallError> {
+    let task = work.task;
     let mut grasp = regrasp_api::Grasp::new(q.X_HO.rotation.inverse() * task.g_H);
     for (finger, contact) in q.contacts.iter() {
         let Some(contact) = contact else { continue };
@@ -106,17 +107,12 @@ fn stable(task: &Task<'_>, q: &Configuration, context: &mut Context<'_>) -> Resu
         grasp.push(GraspContact { finger, p_OC: contact.p_OC, n_O: contact.n_O, cone });
     }
     Ok(!grasp.contacts().is_empty()
-        && task.stability.test(&grasp, &mut Default::default(), context)?.is_stable())
+        && task.stability.test(&grasp, &mut Default::default(), &mut work.context)?.is_stable())
 }
 
 /// A warning where a given start or goal would not be admitted as a node.
-pub(crate) fn warning(
-    task: &Task<'_>,
-    end: End,
-    q: &Configuration,
-    context: &mut Context<'_>,
-) -> Result<Option<String>, CallError> {
-    let refused = task.admissible.admit(task, q, context)?;
+pub(crate) fn warning(work: &mut Work<'_>, end: End, q: &Configuration) -> Result<Option<String>, CallError> {
+    let refused = work.task.admissible.admit(work.task, q, &mut work.context)?;
     Ok(refused.map(|reason| format!("the given grasp at `{end}` may be a dead end: {}", explain(reason))))
 }
 
@@ -152,9 +148,10 @@ impl Finder {
         while self.calls < end {
             let key = self.leg << 32 | self.calls;
             self.calls += 1;
-            let found = session.counted(self.kind, key, 0, |context| {
-                let holding = choices[context.random.index(choices.len())];
-                session.drivers.sampler.sample(task, PoseRequest::At(self.X_HO), holding, context)
+            let found = session.counted(task, (self.kind, key, 0), |work| {
+                let holding = choices[work.context.random.index(choices.len())];
+                let request = PoseRequest::At(self.X_HO);
+                work.plugins.sampler.sample(work.task, request, holding, &mut work.context)
             });
             tally.add(&found.tally);
             if let Some(q) = found.result? {

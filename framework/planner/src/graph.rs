@@ -1,8 +1,8 @@
 //! The manipulation graph: configurations of GS_n, and the edges between them.
 
 use regrasp_api::{
-    ComponentId, Configuration, Contact, EdgeId, EdgeKind, EdgeVerdict, EdgeView, FingerIndex, GraphView,
-    NodeId, angle_between,
+    ComponentId, Configuration, Contact, EdgeId, EdgeKind, EdgeVerdict, EdgeView, FingerIndex, NodeId,
+    angle_between,
 };
 use regrasp_plan::Segment;
 use std::collections::{BTreeMap, HashSet};
@@ -53,6 +53,11 @@ impl Graph {
     /// The configurations of all nodes, by number.
     pub fn nodes(&self) -> &[Configuration] {
         &self.nodes
+    }
+
+    /// The numbers of all nodes.
+    pub fn ids(&self) -> impl Iterator<Item = NodeId> + use<> {
+        (0..self.nodes.len() as u32).map(NodeId)
     }
 
     /// How many nodes.
@@ -164,52 +169,6 @@ pub(crate) fn configuration_distance(a: &Configuration, b: &Configuration, turn_
         _ => turn_length,
     };
     displacement + turn + a.contacts.iter().map(apart).sum::<f64>() / a.contacts.len() as f64
-}
-
-/// The graph as the strategy of one leg sees it.
-pub(crate) struct LegView<'a> {
-    pub graph: &'a Graph,
-    pub start: NodeId,
-    pub goals: &'a [NodeId],
-    pub generated: (usize, usize),
-}
-
-impl GraphView for LegView<'_> {
-    fn node_count(&self) -> usize {
-        self.graph.node_count()
-    }
-    fn generated(&self) -> (usize, usize) {
-        self.generated
-    }
-    fn start(&self) -> NodeId {
-        self.start
-    }
-    fn goals(&self) -> &[NodeId] {
-        self.goals
-    }
-    fn component(&self, node: NodeId) -> ComponentId {
-        self.graph.component(node)
-    }
-    fn components(&self) -> &[ComponentId] {
-        self.graph.components()
-    }
-    fn joined(&self) -> bool {
-        let start = self.graph.component(self.start);
-        self.goals.iter().any(|&goal| self.graph.component(goal) == start)
-    }
-    fn distance(&self, a: NodeId, b: NodeId) -> f64 {
-        self.graph.distance(a, b)
-    }
-    fn attempted(&self, a: NodeId, b: NodeId, kind: EdgeKind) -> bool {
-        self.graph.was_tried(a, b, kind)
-    }
-    fn edges(&self) -> &[EdgeView] {
-        self.graph.edges()
-    }
-    fn shortest_path(&self) -> Vec<EdgeId> {
-        let path = crate::query::shortest_path(self.graph, self.start, self.goals).unwrap_or_default();
-        path.into_iter().map(|step| step.edge).collect()
-    }
 }
 
 #[cfg(test)]

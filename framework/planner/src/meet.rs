@@ -1,9 +1,11 @@
 //! Algorithm 3's connection outside GS_n: rolls and regrasps between two nodes.
 
 use crate::foresight::outlook;
-use crate::session::Session;
-use crate::steps;
-use regrasp_api::{CallError, Configuration, Context, Pose, Reason, Slot, Task, interpolate};
+use crate::order::regrasp_all;
+use crate::segments::{end, reversed};
+use crate::session::Work;
+use crate::steps::{rolled_to, transfer};
+use regrasp_api::{CallError, Configuration, Pose, Reason, Slot, interpolate};
 use regrasp_plan::Segment;
 
 /// How much of the way both ends together must be able to look along, for rolls go farther than looks. Our choice: with 1 the paper's sphere
@@ -18,24 +20,22 @@ const ASIDE: f64 = 0.3;
 /// The paper rolls from one end to the pose of the other and regrasps there. Here both ends roll towards each other, and the
 /// fingers are regrasped where they meet: a motion reversed is a motion, and two rolls reach twice as far as one.
 pub(crate) fn connect(
-    session: &Session<'_>,
-    task: &Task<'_>,
+    work: &mut Work<'_>,
     from: &Configuration,
     to: &Configuration,
-    context: &mut Context<'_>,
 ) -> Result<Option<Vec<Segment>>, CallError> {
-    let looks = [outlook(task, from, &to.X_HO), outlook(task, to, &from.X_HO)];
+    let looks = [outlook(work.task, from, &to.X_HO), outlook(work.task, to, &from.X_HO)];
     if looks[0].fraction + looks[1].fraction < HOPE {
-        context.reject(Slot::TransferPlanner, looks[0].barred.unwrap_or(Reason::Reach));
+        work.context.reject(Slot::TransferPlanner, looks[0].barred.unwrap_or(Reason::Reach));
         return Ok(None);
     }
     let meeting = on_the_way(from, to, share(looks.map(|look| look.fraction)));
-    let Some((mut rolls, X_HO)) = approach(session, task, [from, to], &meeting, context)? else {
+    let Some((mut rolls, X_HO)) = approach(work, [from, to], &meeting)? else {
         return Ok(None);
     };
     let asides = [&from.X_HO, &to.X_HO].map(|end| interpolate(&X_HO, end, ASIDE));
     for place in [X_HO].into_iter().chain(asides.into_iter().filter(|aside| *aside != X_HO)) {
-        if let Some(steps) = regrasp_at(session, task, &mut rolls, &place, context)? {
+        if let Some(steps) = regrasp_at(work, &mut rolls, &place)? {
             return Ok(Some(steps));
         }
     }
@@ -64,21 +64,17 @@ fn on_the_way(from: &Configuration, to: &Configuration, s: f64) -> Pose {
 
 /// Rolls from both ends to one pose, `meeting` or where the rolls do meet; `None` if they do not.
 fn approach(
-    session: &Session<'_>,
-    task: &Task<'_>,
+    work: &mut Work<'_>,
     [from, to]: [&Configuration; 2],
     meeting: &Pose,
-    context: &mut Context<'_>,
 ) -> Result<Option<([Segment; 2], Pose)>, CallError> {
-    let (ahead, mut first) = steps::transfer(session, task, from, meeting, context)?;
-    let (behind, last) = steps::transfer(session, task, to, &ahead.end.X_HO, context)?;
+    let (ahead, mut first) = transfer(work, from, meeting)?;
+    let (behind, last) = transfer(work, to, &ahead.end.X_HO)?;
     if behind.is_complete() {
         return Ok(Some(([first, last], ahead.end.X_HO)));
     }
     // What stopped one of the rolls before they met will stop it again.
-    if !ahead.is_complete()
-        || steps::rolled_to(session, task, &mut first, &behind.end.X_HO, context)?.is_none()
-    {
+    if !ahead.is_complete() || rolled_to(work, &mut first, &behind.end.X_HO)?.is_none() {
         return Ok(None);
     }
     Ok(Some(([first, last], behind.end.X_HO)))
@@ -86,17 +82,15 @@ fn approach(
 
 /// Both rolls made to end at a pose on their way, and the regrasps between them; the second roll is walked backwards.
 fn regrasp_at(
-    session: &Session<'_>,
-    task: &Task<'_>,
+    work: &mut Work<'_>,
     [ahead, behind]: &mut [Segment; 2],
     X_HO: &Pose,
-    context: &mut Context<'_>,
 ) -> Result<Option<Vec<Segment>>, CallError> {
-    let Some(first) = steps::rolled_to(session, task, ahead, X_HO, context)? else { return Ok(None) };
-    let Some(last) = steps::rolled_to(session, task, behind, X_HO, context)? else { return Ok(None) };
-    let (from, to) = (steps::end(&first), steps::end(&last));
-    let Some(regrasps) = steps::regrasp_all(session, task, from, to, context)? else { return Ok(None) };
-    let back = steps::reversed(vec![last]);
+    let Some(first) = rolled_to(work, ahead, X_HO)? else { return Ok(None) };
+    let Some(last) = rolled_to(work, behind, X_HO)? else { return Ok(None) };
+    let (from, to) = (end(&first), end(&last));
+    let Some(regrasps) = regrasp_all(work, from, to)? else { return Ok(None) };
+    let back = reversed(vec![last]);
     Ok(Some([first].into_iter().chain(regrasps).chain(back).collect()))
 }
 

@@ -1,18 +1,39 @@
 //! The order in which fingers are regrasped one after the other, the object resting.
 
-use crate::session::Session;
-use crate::steps;
-use regrasp_api::{CallError, Configuration, Context, FingerIndex, FingerSet, MAX_FINGERS, Task};
-use regrasp_plan::Segment;
+use crate::segments::{differing, end};
+use crate::session::Work;
+use regrasp_api::{CallError, Configuration, FingerIndex, FingerSet, MAX_FINGERS, Path, Target};
+use regrasp_plan::{Segment, SegmentKind};
+
+/// Moves the fingers one after the other from `from` to the contacts of `to`, the object resting; `None` if no order works.
+pub(crate) fn regrasp_all(
+    work: &mut Work<'_>,
+    from: &Configuration,
+    to: &Configuration,
+) -> Result<Option<Vec<Segment>>, CallError> {
+    Order::new(from, to).find(work)
+}
+
+/// One finger moves from `q` to its contact and joints of `to`; `None` if it cannot.
+fn regrasp(
+    work: &mut Work<'_>,
+    q: &Configuration,
+    (finger, to): (FingerIndex, &Configuration),
+) -> Result<Option<Segment>, CallError> {
+    let mut path = Path::default();
+    let target =
+        Target::Regrasp { finger, contact: to.contacts[finger].as_ref(), joints: &to.joints[finger] };
+    let reached = work.plugins.regrasp.connect(work.task, q, &target, Some(&mut path), &mut work.context)?;
+    let segment = || Segment { kind: SegmentKind::Regrasp(finger), states: path.states, times: Vec::new() };
+    Ok(reached.is_complete().then(segment))
+}
 
 /// Depth-first search over the orders of the fingers.
 ///
 /// What is left to move decides everything that comes, so sets of fingers are remembered: those from which no order
 /// keeps the grasp stable and the fingers out of each other's places, found out first because it costs a hundredth of a finger's path, and
 /// those from which the paths failed.
-pub(crate) struct Order<'a> {
-    session: &'a Session<'a>,
-    task: &'a Task<'a>,
+struct Order<'a> {
     from: &'a Configuration,
     to: &'a Configuration,
     /// Whether some order of the fingers in the set keeps the grasp stable, where it is known.
@@ -24,15 +45,8 @@ pub(crate) struct Order<'a> {
 }
 
 impl<'a> Order<'a> {
-    pub fn new(
-        session: &'a Session<'a>,
-        task: &'a Task<'a>,
-        from: &'a Configuration,
-        to: &'a Configuration,
-    ) -> Self {
+    fn new(from: &'a Configuration, to: &'a Configuration) -> Self {
         Self {
-            session,
-            task,
             from,
             to,
             hopeful: [None; 256],
@@ -43,17 +57,12 @@ impl<'a> Order<'a> {
     }
 
     /// The regrasps in an order that works, if there is one.
-    pub fn find(mut self, context: &mut Context<'_>) -> Result<Option<Vec<Segment>>, CallError> {
-        let moved = steps::differing(self.from, self.to);
-        Ok(if self.search(self.from, moved, context)? { Some(self.steps) } else { None })
+    fn find(mut self, work: &mut Work<'_>) -> Result<Option<Vec<Segment>>, CallError> {
+        let moved = differing(self.from, self.to);
+        Ok(if self.search(work, self.from, moved)? { Some(self.steps) } else { None })
     }
 
-    fn search(
-        &mut self,
-        q: &Configuration,
-        left: FingerSet,
-        context: &mut Context<'_>,
-    ) -> Result<bool, CallError> {
+    fn search(&mut self, work: &mut Work<'_>, q: &Configuration, left: FingerSet) -> Result<bool, CallError> {
         if left.is_empty() {
             return Ok(true);
         }
@@ -61,15 +70,15 @@ impl<'a> Order<'a> {
             return Ok(false);
         }
         for finger in left.iter() {
-            context.proceed()?;
-            if !self.is_hopeful(left, finger, context)? {
+            work.context.proceed()?;
+            if !self.is_hopeful(work, left, finger)? {
                 continue;
             }
             let to = (finger, self.to);
-            let Some(segment) = steps::regrasp(self.session, self.task, q, to, context)? else { continue };
-            let next = segment.states.last().expect("a regrasp has two ends").clone();
+            let Some(segment) = regrasp(work, q, to)? else { continue };
+            let next = end(&segment).clone();
             self.steps.push(segment);
-            if self.search(&next, left.without(finger), context)? {
+            if self.search(work, &next, left.without(finger))? {
                 return Ok(true);
             }
             self.steps.pop();
@@ -81,32 +90,30 @@ impl<'a> Order<'a> {
     /// Whether `finger` of the fingers `left` may be lifted and set down, and some order of the rest be kept stable.
     fn is_hopeful(
         &mut self,
+        work: &mut Work<'_>,
         left: FingerSet,
         finger: FingerIndex,
-        context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
-        let is_barred = !self.barring(finger).intersection(left).is_empty();
-        Ok(!is_barred
-            && self.may_lift(left, finger, context)?
-            && self.some_order(left.without(finger), context)?)
+        let is_barred = !self.barring(work, finger).intersection(left).is_empty();
+        Ok(!is_barred && self.may_lift(work, left, finger)? && self.some_order(work, left.without(finger))?)
     }
 
     /// The fingers that must go before `finger` can come to where it goes.
-    fn barring(&mut self, finger: FingerIndex) -> FingerSet {
+    fn barring(&mut self, work: &Work<'_>, finger: FingerIndex) -> FingerSet {
         if let Some(known) = self.barring[finger.index()] {
             return known;
         }
         let goes = (finger, &self.to.joints[finger]);
         let touches = |&other: &FingerIndex| {
             other != finger
-                && self.task.clearance.fingers_free(goes, (other, &self.from.joints[other])).is_err()
+                && work.task.clearance.fingers_free(goes, (other, &self.from.joints[other])).is_err()
         };
         let barring = self.from.joints.fingers().filter(touches).collect();
         self.barring[finger.index()] = Some(barring);
         barring
     }
 
-    fn some_order(&mut self, left: FingerSet, context: &mut Context<'_>) -> Result<bool, CallError> {
+    fn some_order(&mut self, work: &mut Work<'_>, left: FingerSet) -> Result<bool, CallError> {
         if left.is_empty() {
             return Ok(true);
         }
@@ -115,7 +122,7 @@ impl<'a> Order<'a> {
         }
         let mut hopeful = false;
         for finger in left.iter() {
-            if self.is_hopeful(left, finger, context)? {
+            if self.is_hopeful(work, left, finger)? {
                 hopeful = true;
                 break;
             }
@@ -125,20 +132,14 @@ impl<'a> Order<'a> {
     }
 
     /// Whether the other fingers hold the object while `finger` moves, those `left` where they were and the rest where they go.
-    fn may_lift(
-        &self,
-        left: FingerSet,
-        finger: FingerIndex,
-        context: &mut Context<'_>,
-    ) -> Result<bool, CallError> {
+    fn may_lift(&self, work: &mut Work<'_>, left: FingerSet, finger: FingerIndex) -> Result<bool, CallError> {
         let mut q = self.from.clone();
         for other in q.contacts.fingers().filter(|&other| !left.contains(other)) {
             q.contacts[other] = self.to.contacts[other];
         }
         let rest = FingerSet::first(q.contacts.len()).without(finger);
-        let grasp = self.task.grasp(&q, rest);
-        let stability = self.task.stability;
+        let grasp = work.task.grasp(&q, rest);
         Ok(!grasp.contacts().is_empty()
-            && stability.test(&grasp, &mut Default::default(), context)?.is_stable())
+            && work.task.stability.test(&grasp, &mut Default::default(), &mut work.context)?.is_stable())
     }
 }

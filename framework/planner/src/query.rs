@@ -1,144 +1,63 @@
-//! The query: a shortest path through the manipulation graph by A*.
+//! The query: a way through the graph, whose paths in GS_n become transfers and regrasps.
 
-use crate::graph::Graph;
-use regrasp_api::{EdgeId, NodeId};
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use crate::decompose::decompose;
+use crate::search::Search;
+use crate::segments::{moves, reversed};
+use crate::session::{Call, Counted};
+use crate::shortest_path::{Step, shortest_path};
+use regrasp_api::{CallError, EdgeId};
+use regrasp_plan::Segment;
 
-/// One edge of a path, and whether it is walked from its `from` to its `to`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Step {
-    pub edge: EdgeId,
-    pub forward: bool,
-}
+type Decomposed = Counted<Result<Option<Vec<Segment>>, CallError>>;
 
-/// A distance that orders totally.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) struct Length(pub f64);
-impl Eq for Length {}
-impl PartialOrd for Length {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Length {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0)
-    }
-}
-
-/// The shortest path from `start` to the nearest of `goals` in the planner's metric, `None` if there is none.
-///
-/// P. Hart, N. Nilsson, B. Raphael, "A formal basis for the heuristic determination of minimum cost paths", IEEE Trans.
-/// Systems Science and Cybernetics 1968; the heuristic is the metric itself, which never overestimates. Ties are broken
-/// by node number, so that the path is unique.
-pub(crate) fn shortest_path(graph: &Graph, start: NodeId, goals: &[NodeId]) -> Option<Vec<Step>> {
-    let ahead = |node| goals.iter().map(|&goal| graph.distance(node, goal)).fold(f64::INFINITY, f64::min);
-    let adjacent = adjacency(graph);
-    let mut cost = vec![f64::INFINITY; graph.node_count()];
-    let mut came_by: Vec<Option<(NodeId, Step)>> = vec![None; graph.node_count()];
-    let mut open = BinaryHeap::from([Reverse((Length(ahead(start)), start))]);
-    let mut closed = vec![false; graph.node_count()];
-    cost[start.0 as usize] = 0.0;
-    while let Some(Reverse((_, node))) = open.pop() {
-        if goals.contains(&node) {
-            return Some(trace(&came_by, node));
-        }
-        if std::mem::replace(&mut closed[node.0 as usize], true) {
-            continue;
-        }
-        for &(next, step) in &adjacent[node.0 as usize] {
-            let through = cost[node.0 as usize] + graph.distance(node, next);
-            if through < cost[next.0 as usize] {
-                cost[next.0 as usize] = through;
-                came_by[next.0 as usize] = Some((node, step));
-                open.push(Reverse((Length(through + ahead(next)), next)));
+impl Search<'_> {
+    /// Searches a path and decomposes its edges; the first that fails leaves the graph, and the search goes on.
+    pub fn query(&mut self) -> Result<Option<Vec<Segment>>, CallError> {
+        let path = shortest_path(self.state.graph, self.leg.start, &self.state.goals);
+        let Some(path) = path else { return Ok(None) };
+        let todo: Vec<_> = path.iter().filter(|step| self.state.graph.steps(step.edge).is_none()).collect();
+        let decomposed = self.decompose_until_failure(&todo);
+        for (step, found) in todo.iter().zip(decomposed) {
+            self.state.tally.add(&found.tally);
+            match found.result? {
+                Some(segments) => self.state.graph.set_steps(step.edge, segments),
+                None => {
+                    self.state.graph.remove_edge(step.edge);
+                    return Ok(None);
+                }
             }
         }
+        self.state.used = path.iter().map(|step| step.edge).collect();
+        Ok(Some(self.assemble(&path)))
     }
-    None
-}
 
-fn adjacency(graph: &Graph) -> Vec<Vec<(NodeId, Step)>> {
-    let mut adjacent = vec![Vec::new(); graph.node_count()];
-    for edge in graph.edges() {
-        adjacent[edge.from.0 as usize].push((edge.to, Step { edge: edge.id, forward: true }));
-        adjacent[edge.to.0 as usize].push((edge.from, Step { edge: edge.id, forward: false }));
-    }
-    adjacent
-}
-
-fn trace(came_by: &[Option<(NodeId, Step)>], goal: NodeId) -> Vec<Step> {
-    let mut path = Vec::new();
-    let mut node = goal;
-    while let Some((before, step)) = came_by[node.0 as usize] {
-        path.push(step);
-        node = before;
-    }
-    path.reverse();
-    path
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use regrasp_api::{Configuration, EdgeKind, EdgeVerdict, PerFinger, Pose, Random};
-
-    fn random_graph(random: &mut Random) -> Graph {
-        let mut graph = Graph::new(0.03);
-        let none = PerFinger::filled(1, None);
-        for _ in 0..12 {
-            let p = random.direction() * random.unit();
-            let joints = PerFinger::filled(1, Default::default());
-            graph.add_node(Configuration { X_HO: Pose::translation(p.x, p.y, p.z), joints, contacts: none });
-        }
-        for _ in 0..16 {
-            let (a, b) = (NodeId(random.index(12) as u32), NodeId(random.index(12) as u32));
-            if a != b {
-                graph.add_edge(a, b, EdgeKind::Grasp, EdgeVerdict::Valid);
+    /// The decompositions of a path's edges in turn, up to and including the first that fails.
+    fn decompose_until_failure(&self, todo: &[&Step]) -> Vec<Decomposed> {
+        let mut decomposed = Vec::new();
+        for found in self.session.ahead(todo.len(), |i| self.decompose(todo[i].edge)) {
+            let failed = !matches!(found.result, Ok(Some(_)));
+            decomposed.push(found);
+            if failed {
+                break;
             }
         }
-        graph
+        decomposed
     }
 
-    /// Shortest distances from every node to `goal` by relaxing all edges until nothing changes.
-    fn relaxed(graph: &Graph, goal: NodeId) -> Vec<f64> {
-        let mut distance = vec![f64::INFINITY; graph.node_count()];
-        distance[goal.0 as usize] = 0.0;
-        for _ in 0..graph.node_count() {
-            for edge in graph.edges() {
-                let (a, b) = (edge.from.0 as usize, edge.to.0 as usize);
-                let length = graph.distance(edge.from, edge.to);
-                distance[a] = distance[a].min(distance[b] + length);
-                distance[b] = distance[b].min(distance[a] + length);
-            }
-        }
-        distance
+    fn decompose(&self, id: EdgeId) -> Decomposed {
+        let graph = &*self.state.graph;
+        let edge = graph.edge(id).expect("the path's edges are in the graph");
+        let (from, to) = (graph.node(edge.from), graph.node(edge.to));
+        let key = (Call::Decompose, u64::from(edge.from.0), u64::from(edge.to.0));
+        self.session.counted(&self.leg.task, key, |work| decompose(work, from, to))
     }
 
-    #[test]
-    fn paths_are_as_short_as_exhaustive_relaxation_finds() {
-        let mut random = Random::from_key(3, 0, 0, 0);
-        let mut found = 0;
-        for _ in 0..200 {
-            let graph = random_graph(&mut random);
-            let (start, goals) = (NodeId(0), [NodeId(10), NodeId(11)]);
-            let best = goals.map(|goal| relaxed(&graph, goal)[0]).into_iter().fold(f64::INFINITY, f64::min);
-            let Some(path) = shortest_path(&graph, start, &goals) else {
-                assert!(best.is_infinite());
-                continue;
-            };
-            found += 1;
-            let (mut at, mut length) = (start, 0.0);
-            for step in path {
-                let edge = graph.edge(step.edge).unwrap();
-                let (from, to) = if step.forward { (edge.from, edge.to) } else { (edge.to, edge.from) };
-                assert_eq!(from, at, "the path is connected");
-                length += graph.distance(from, to);
-                at = to;
-            }
-            assert!(goals.contains(&at) && (length - best).abs() < 1e-12);
-        }
-        assert!(found > 50, "{found} of 200 random graphs had a path");
+    fn assemble(&self, path: &[Step]) -> Vec<Segment> {
+        let steps_of = |step: &Step| {
+            let steps = self.state.graph.steps(step.edge);
+            let steps = steps.expect("every edge of the path was decomposed").to_vec();
+            if step.forward { steps } else { reversed(steps) }
+        };
+        path.iter().flat_map(steps_of).filter(moves).collect()
     }
 }

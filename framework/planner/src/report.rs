@@ -28,6 +28,27 @@ pub trait Progress: Sync {
 pub struct Silent;
 impl Progress for Silent {}
 
+/// A phase of a run, timed by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Phase {
+    Endpoints,
+    Search,
+    Smoothing,
+    Timing,
+}
+
+impl Phase {
+    /// Its name in the statistics.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Endpoints => "endpoints",
+            Self::Search => "search",
+            Self::Smoothing => "smoothing",
+            Self::Timing => "timing",
+        }
+    }
+}
+
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

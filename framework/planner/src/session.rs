@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 use regrasp_api::{
-    CallError, ClosedChainSampler, Context, GraphStrategy, Interrupt, LocalPlanner, Pose, Random, Tally,
-    Task, unless_fault,
+    CallError, ClosedChainSampler, Context, GraphStrategy, Interrupt, LocalPlanner, Random, Tally, Task,
+    unless_fault,
 };
 use std::collections::VecDeque;
 
@@ -45,12 +45,23 @@ pub(crate) enum Call {
     Smooth = 9,
 }
 
+/// The key of a call: what it is for, and two numbers that tell calls of a kind apart.
+pub(crate) type Key = (Call, u64, u64);
+
 /// A run's shared, immutable side.
+#[derive(Clone, Copy)]
 pub(crate) struct Session<'a> {
-    pub drivers: Drivers<'a>,
+    pub plugins: Drivers<'a>,
     pub seed: u64,
     pub interrupt: &'a dyn Interrupt,
-    pub pool: Option<rayon::ThreadPool>,
+    pub pool: Option<&'a rayon::ThreadPool>,
+}
+
+/// One call at work: the plugins that it may ask, what it works on, and what it draws from and counts in.
+pub(crate) struct Work<'a> {
+    pub plugins: Drivers<'a>,
+    pub task: &'a Task<'a>,
+    pub context: Context<'a>,
 }
 
 /// The result of a call with what it counted; the counts are charged when the result is consumed.
@@ -60,24 +71,36 @@ pub(crate) struct Counted<T> {
 }
 
 impl<'a> Session<'a> {
-    /// The context of the call with the key `(kind, a, b)`: its random stream depends on nothing else but the seed.
-    pub fn context(&self, kind: Call, a: u64, b: u64) -> Context<'a> {
-        Context::new(Random::from_key(self.seed, kind as u64, a, b), self.interrupt)
+    /// The call with this key, not begun.
+    pub fn work<'w>(&self, task: &'w Task<'w>, key: Key) -> Work<'w>
+    where
+        'a: 'w,
+    {
+        Work { plugins: self.plugins, task, context: Context::new(self.random(key), self.interrupt) }
     }
 
-    /// Runs `call` in the context of its key, and returns its result with what it counted.
+    /// The random stream of the call with this key: it depends on nothing else but the seed.
+    fn random(&self, (kind, a, b): Key) -> Random {
+        Random::from_key(self.seed, kind as u64, a, b)
+    }
+
+    /// Makes the call with this key, and returns its result with what it counted.
     ///
     /// A plugin that panicked where it could not return an error makes the result worthless: then it is that panic.
     pub fn counted<T>(
         &self,
-        kind: Call,
-        a: u64,
-        b: u64,
-        call: impl FnOnce(&mut Context<'_>) -> Result<T, CallError>,
+        task: &Task<'_>,
+        key: Key,
+        call: impl FnOnce(&mut Work<'_>) -> Result<T, CallError>,
     ) -> Counted<Result<T, CallError>> {
-        let mut context = self.context(kind, a, b);
-        let result = unless_fault(call(&mut context));
-        Counted { result, tally: context.tally }
+        let mut work = self.work(task, key);
+        let result = unless_fault(call(&mut work));
+        Counted { result, tally: work.context.tally }
+    }
+
+    /// Ends the run where it should stop.
+    pub fn proceed(&self) -> Result<(), CallError> {
+        Context::new(Random::from_key(0, 0, 0, 0), self.interrupt).proceed()
     }
 
     /// The results of `call(0), call(1), …` in order, computed ahead by the threads there are.
@@ -107,28 +130,23 @@ impl<'a> Session<'a> {
 
     /// How many threads compute.
     pub fn threads(&self) -> usize {
-        self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
+        self.pool.map_or(1, rayon::ThreadPool::current_num_threads)
     }
 
     fn compute<T: Send>(&self, range: std::ops::Range<usize>, call: &(impl Fn(usize) -> T + Sync)) -> Vec<T> {
-        match &self.pool {
+        match self.pool {
             Some(pool) if range.len() > 1 => pool.install(|| range.into_par_iter().map(call).collect()),
             _ => range.map(call).collect(),
         }
     }
 }
 
-/// The task of one leg: the search's landmarks are its start and its goal.
-pub(crate) fn leg_task<'a>(task: &Task<'a>, landmarks: &'a [Pose]) -> Task<'a> {
-    Task { landmarks, ..*task }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use regrasp_api::{
-        Action, Configuration, Contact, FingerSet, GraphView, Path, PerFinger, PoseRequest, Reached, Target,
-        Uninterrupted,
+        Action, Configuration, Contact, FingerSet, GraphView, Path, PerFinger, Pose, PoseRequest, Reached,
+        Target, Uninterrupted,
     };
     use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -173,18 +191,21 @@ mod tests {
         }
     }
 
-    fn session(threads: usize) -> Session<'static> {
-        let drivers =
+    fn pool(threads: usize) -> Option<rayon::ThreadPool> {
+        (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap())
+    }
+
+    fn session(pool: Option<&rayon::ThreadPool>) -> Session<'_> {
+        let plugins =
             Drivers { sampler: &Idle, grasp: &Idle, transfer: &Idle, regrasp: &Idle, strategy: &Idle };
-        let pool =
-            (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap());
-        Session { drivers, seed: 1, interrupt: &Uninterrupted, pool }
+        Session { plugins, seed: 1, interrupt: &Uninterrupted, pool }
     }
 
     #[test]
     fn results_come_in_order_for_any_number_of_threads() {
         for threads in [1, 2, 3] {
-            let session = session(threads);
+            let pool = pool(threads);
+            let session = session(pool.as_ref());
             let values: Vec<_> = session.ahead(10, |i| i * i).collect();
             assert_eq!(values, (0..10).map(|i| i * i).collect::<Vec<_>>());
         }
@@ -193,15 +214,16 @@ mod tests {
     #[test]
     fn one_thread_computes_nothing_beyond_what_is_consumed() {
         let calls = AtomicUsize::new(0);
-        let session = session(1);
+        let session = session(None);
         let taken = session.ahead(10, |_| calls.fetch_add(1, Ordering::Relaxed)).take(3).count();
         assert_eq!((taken, calls.load(Ordering::Relaxed)), (3, 3));
     }
 
     #[test]
     fn streams_depend_on_the_key_alone() {
-        let word = |threads, kind, a, b| session(threads).context(kind, a, b).random.word();
-        assert_eq!(word(1, Call::Sample, 2, 3), word(2, Call::Sample, 2, 3));
-        assert_ne!(word(1, Call::Sample, 2, 3), word(1, Call::Extend, 2, 3));
+        let word = |kind, a, b| session(None).random((kind, a, b)).word();
+        assert_eq!(word(Call::Sample, 2, 3), word(Call::Sample, 2, 3));
+        assert_ne!(word(Call::Sample, 2, 3), word(Call::Extend, 2, 3));
+        assert_ne!(word(Call::Sample, 2, 3), word(Call::Sample, 2, 4));
     }
 }

@@ -11,9 +11,11 @@
 
 use crate::draft::{Draft, Station, regrasps};
 use crate::foresight::barred_half_way;
-use crate::session::{Call, Counted, Session};
-use crate::steps;
-use regrasp_api::{CallError, Configuration, Context, FingerSet, Tally, Task};
+use crate::order::regrasp_all;
+use crate::segments::{differing, moves};
+use crate::session::{Call, Counted, Session, Work};
+use crate::steps::{transfer, transfer_then_regrasp};
+use regrasp_api::{CallError, Configuration, FingerSet, Tally, Task};
 use regrasp_plan::Segment;
 use std::collections::HashSet;
 use std::hash::{Hash, Hasher};
@@ -95,7 +97,7 @@ impl Smoother<'_> {
             }
         }
         if let Some(&to) = stations.get(place + 1).filter(|&&to| !self.draft.passes_a_goal(from, to)) {
-            let moved = steps::differing(self.draft.boundary(from.start), self.draft.boundary(from.end));
+            let moved = differing(self.draft.boundary(from.start), self.draft.boundary(from.end));
             let subsets =
                 (1..=u8::MAX).map(FingerSet::from_bits).filter(|&set| set.intersection(moved) == set);
             let mut subsets: Vec<_> = subsets.filter(|set| set.len() < moved.len()).collect();
@@ -117,33 +119,30 @@ impl Smoother<'_> {
         shortcut: &Shortcut,
         number: usize,
     ) -> Counted<Result<Option<Vec<Segment>>, CallError>> {
-        self.session.counted(Call::Smooth, number as u64, 0, |context| {
-            let segments = self.segments_of(shortcut, context)?;
+        self.session.counted(self.task, (Call::Smooth, number as u64, 0), |work| {
+            let segments = self.segments_of(work, shortcut)?;
             Ok(segments.filter(|segments| regrasps(segments) < self.regrasps_between(shortcut)))
         })
     }
 
     fn segments_of(
         &self,
+        work: &mut Work<'_>,
         shortcut: &Shortcut,
-        context: &mut Context<'_>,
     ) -> Result<Option<Vec<Segment>>, CallError> {
-        let (session, task) = (self.session, self.task);
         let (start, there) = (self.draft.boundary(shortcut.from.start), self.departure(shortcut));
-        let Some(mut segments) = steps::regrasp_all(session, task, start, &there, context)? else {
-            return Ok(None);
-        };
+        let Some(mut segments) = regrasp_all(work, start, &there)? else { return Ok(None) };
         let to = self.arrival(shortcut);
         let rest = if self.draft.is_free_end(shortcut.to.end) {
-            let (reached, segment) = steps::transfer(session, task, &there, &to.X_HO, context)?;
+            let (reached, segment) = transfer(work, &there, &to.X_HO)?;
             reached.is_complete().then(|| vec![segment])
         } else {
-            steps::transfer_then_regrasp(session, task, &there, to, context)?
+            transfer_then_regrasp(work, &there, to)?
         };
         let Some(rest) = rest else { return Ok(None) };
         segments.extend(rest);
         // Without any motion there would be no segment left to smooth.
-        Ok(Some(segments).filter(|segments| segments.iter().any(steps::moves)))
+        Ok(Some(segments).filter(|segments| segments.iter().any(moves)))
     }
 
     /// The configuration in which a shortcut leaves its first station.

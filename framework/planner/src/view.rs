@@ -1,0 +1,51 @@
+//! The graph as the strategy of one leg sees it.
+
+use crate::graph::Graph;
+use crate::shortest_path::shortest_path;
+use regrasp_api::{ComponentId, EdgeId, EdgeKind, EdgeView, GraphView, NodeId};
+
+/// The graph as the strategy of one leg sees it.
+pub(crate) struct LegView<'a> {
+    pub graph: &'a Graph,
+    pub start: NodeId,
+    pub goals: &'a [NodeId],
+    pub generated: (usize, usize),
+}
+
+impl GraphView for LegView<'_> {
+    fn node_count(&self) -> usize {
+        self.graph.node_count()
+    }
+    fn generated(&self) -> (usize, usize) {
+        self.generated
+    }
+    fn start(&self) -> NodeId {
+        self.start
+    }
+    fn goals(&self) -> &[NodeId] {
+        self.goals
+    }
+    fn component(&self, node: NodeId) -> ComponentId {
+        self.graph.component(node)
+    }
+    fn components(&self) -> &[ComponentId] {
+        self.graph.components()
+    }
+    fn joined(&self) -> bool {
+        let start = self.graph.component(self.start);
+        self.goals.iter().any(|&goal| self.graph.component(goal) == start)
+    }
+    fn distance(&self, a: NodeId, b: NodeId) -> f64 {
+        self.graph.distance(a, b)
+    }
+    fn attempted(&self, a: NodeId, b: NodeId, kind: EdgeKind) -> bool {
+        self.graph.was_tried(a, b, kind)
+    }
+    fn edges(&self) -> &[EdgeView] {
+        self.graph.edges()
+    }
+    fn shortest_path(&self) -> Vec<EdgeId> {
+        let path = shortest_path(self.graph, self.start, self.goals).unwrap_or_default();
+        path.into_iter().map(|step| step.edge).collect()
+    }
+}
