@@ -3,8 +3,8 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use regrasp::Stopwatch;
 use regrasp::planner::Status;
-use regrasp::study::Setup;
-use regrasp::study::scenario::SCENARIOS;
+use regrasp::run::Setup;
+use regrasp::run::scenario::SCENARIOS;
 use std::hint::black_box;
 use std::time::Duration;
 

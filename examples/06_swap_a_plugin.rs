@@ -6,7 +6,7 @@
 
 use regrasp::api::Slot;
 use regrasp::host::Choices;
-use regrasp::study::RunError;
+use regrasp::run::RunError;
 use std::error::Error;
 
 /// What is tried: a name, and what it changes.

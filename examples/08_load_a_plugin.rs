@@ -8,7 +8,7 @@
 use regrasp::Stopwatch;
 use regrasp::api::Slot;
 use regrasp::host::{Registry, Source};
-use regrasp::study::{Setup, scenario};
+use regrasp::run::{Setup, scenario};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::error::Error;
 use std::path::{Path, PathBuf};

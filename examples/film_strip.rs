@@ -4,7 +4,7 @@
 //!
 //! A finger that holds the object has a dark tip, a lifted one a red tip. The cross painted on the object shows how it turns.
 
-use regrasp::study::picture::{Picture, Scene, sheet};
+use regrasp::view::picture::{Picture, Scene, sheet};
 use std::error::Error;
 
 /// How many frames, and how many side by side.

@@ -7,8 +7,8 @@
 //! Athlon64 3500+. It gives no dimensions, so that the problems are alike, not the same.
 
 use regrasp::Stopwatch;
+use regrasp::run::scenario::Scenario;
 use regrasp::study::compare::{PaperRow, RunName, RunRecord, paper_table};
-use regrasp::study::scenario::Scenario;
 use std::collections::BTreeMap;
 use std::error::Error;
 

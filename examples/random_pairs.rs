@@ -8,8 +8,8 @@
 use regrasp::Stopwatch;
 use regrasp::api::{Pose, PoseDescription, Random, Reason, Slot};
 use regrasp::planner::Status;
-use regrasp::study::Run;
-use regrasp::study::scenario::Scenario;
+use regrasp::run::Run;
+use regrasp::run::scenario::Scenario;
 use std::error::Error;
 use std::time::Duration;
 

@@ -13,10 +13,10 @@ use crate::{Failure, overrides, plugins, say, say_json};
 use progress::Bar;
 use regrasp::api::Interrupt;
 use regrasp::host::Registry;
+use regrasp::run::scenario::{self, Scenario};
 use regrasp::study::compare::{
     self, Change, Draft, Execution, Folder, RUN_THREAD, RunRecord, Seeds, Study, VariantDraft,
 };
-use regrasp::study::scenario::{self, Scenario};
 use std::{panic, thread};
 
 pub fn run(args: &CompareArgs) -> Result<(), Failure> {

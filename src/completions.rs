@@ -7,7 +7,7 @@ use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
 use regrasp::api::Role;
 use regrasp::host::Registry;
-use regrasp::study::scenario::{HANDS, SCENARIOS};
+use regrasp::run::scenario::{HANDS, SCENARIOS};
 
 /// Print a script that completes commands, options and their values in a shell.
 #[derive(Debug, Args)]

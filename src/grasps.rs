@@ -3,7 +3,7 @@
 use crate::{Failure, export};
 use regrasp::api::Slot;
 use regrasp::export::{GraspRecord, Grasps};
-use regrasp::study::{Run, Setup, scenario::Scenario};
+use regrasp::run::{Run, Setup, scenario::Scenario};
 use std::path::Path;
 
 /// Refuses a place for grasps before any work is done.

@@ -8,7 +8,7 @@
 //! for segment in &run.outcome.motion.segments {
 //!     println!("{:?}, {} states", segment.kind, segment.states.len());
 //! }
-//! # Ok::<(), regrasp::study::RunError>(())
+//! # Ok::<(), regrasp::run::RunError>(())
 //! ```
 //!
 //! Every component of the algorithm is a plugin of one of six roles, each a trait of [`api`]:
@@ -34,12 +34,14 @@ mod stopwatch;
 
 pub use stopwatch::Stopwatch;
 
+pub use regrasp_abi as abi;
 pub use regrasp_api as api;
 pub use regrasp_export as export;
 pub use regrasp_host as host;
 pub use regrasp_physics as physics;
 pub use regrasp_plan as plan;
 pub use regrasp_planner as planner;
+pub use regrasp_run as run;
 pub use regrasp_study as study;
 pub use regrasp_verify as verify;
 pub use regrasp_view as view;
@@ -58,9 +60,9 @@ pub mod plugins {
 }
 
 use host::Registry;
+use run::scenario::{self, Scenario};
+use run::{Run, RunError, Setup};
 use std::time::Duration;
-use study::scenario::{self, Scenario};
-use study::{Run, RunError, Setup};
 
 /// Loads the built-in scenario of this name, or else the file; it may use the plugins that are linked into the program.
 pub fn load(name: &str) -> Result<Scenario, RunError> {

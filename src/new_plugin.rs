@@ -2,8 +2,8 @@
 
 use crate::args::{LibraryArgs, NewPluginArgs};
 use crate::{Failure, plugins, say};
-use regrasp::api::{Role, Slot};
-use regrasp::host::{Choices, did_you_mean, near};
+use regrasp::api::{Role, Slot, did_you_mean, near};
+use regrasp::host::Choices;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -118,6 +118,7 @@ impl Draft {
             ("package", package.clone()),
             ("library", Path::new("target").join("release").join(library).display().to_string()),
             ("framework", framework.display().to_string()),
+            ("abi", quoted("abi")?),
             ("api", quoted("api")?),
             ("conformance", quoted("conformance")?),
         ];

@@ -4,7 +4,7 @@ use crate::Failure;
 use crate::args::PlanArgs;
 use regrasp::api::Slot;
 use regrasp::host::{Choices, HostError, slot_by_name};
-use regrasp::study::scenario::Scenario;
+use regrasp::run::scenario::Scenario;
 use serde_json::Value;
 
 /// Applies the changes; `--use` before `--set`, whatever their order.

@@ -6,7 +6,7 @@ use crate::watch::Watch;
 use crate::{Failure, grasps, overrides, plugins, report, say, say_json, view};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
-use regrasp::study::{Run, RunOptions, Setup, scenario};
+use regrasp::run::{Run, RunOptions, Setup, scenario};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 

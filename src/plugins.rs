@@ -4,9 +4,9 @@ use crate::args::{LibraryArgs, PluginsArgs};
 use crate::property::Property;
 use crate::table::Table;
 use crate::{Failure, say, say_json};
-use regrasp::api::{Entry, Role, Slot};
-use regrasp::host::{Choices, Registry, did_you_mean, near, settings_schema};
-use regrasp::study::scenario::SCENARIOS;
+use regrasp::api::{Entry, Role, Slot, did_you_mean, near};
+use regrasp::host::{Choices, Registry, settings_schema};
+use regrasp::run::scenario::SCENARIOS;
 use serde_json::{Value, json};
 
 /// The plugins that are linked into the program, and those of the libraries that are to be loaded.

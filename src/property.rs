@@ -1,6 +1,6 @@
 //! What a JSON schema says of a key, in words: for the terminal and for the book's reference.
 
-use regrasp::host::unit;
+use regrasp::api::unit;
 use serde_json::Value;
 
 /// A key's schema, and the schema that it belongs to.

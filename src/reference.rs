@@ -9,7 +9,8 @@ mod schema;
 use crate::args::{Arguments, LibraryArgs};
 use crate::{Failure, say};
 use clap::{Args, CommandFactory};
-use regrasp::study::{compare, scenario};
+use regrasp::run::scenario;
+use regrasp::study::compare;
 use schema::{Chapter, Page};
 use std::path::PathBuf;
 

@@ -3,8 +3,9 @@
 use crate::args::ScenariosArgs;
 use crate::table::Table;
 use crate::{Failure, say, say_json};
-use regrasp::host::{Registry, did_you_mean, near};
-use regrasp::study::scenario::{self, HANDS, SCENARIOS, Scenario};
+use regrasp::api::{did_you_mean, near};
+use regrasp::host::Registry;
+use regrasp::run::scenario::{self, HANDS, SCENARIOS, Scenario};
 use serde_json::{Value, json};
 
 pub fn run(args: &ScenariosArgs) -> Result<(), Failure> {

@@ -2,7 +2,8 @@
 
 use crate::args::{Kind, SchemaArgs};
 use crate::{Failure, say};
-use regrasp::study::{compare, scenario};
+use regrasp::run::scenario;
+use regrasp::study::compare;
 
 pub fn run(args: &SchemaArgs) -> Result<(), Failure> {
     let schema = match args.kind {

@@ -3,7 +3,7 @@
 use crate::api::Interrupt;
 use crate::plan::StoppedBy;
 use crate::planner::{Clock, Silent};
-use crate::study::{RunOptions, Stop};
+use crate::run::{RunOptions, Stop};
 use std::time::{Duration, Instant};
 
 /// Times a run, and ends it at a limit where it has one.

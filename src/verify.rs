@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn places_name_only_what_applies() {
         let registry = regrasp::host::Registry::linked().expect("the built-in plugins differ");
-        let scenario = regrasp::study::scenario::load("sphere", &registry).expect("it is built in");
+        let scenario = regrasp::run::scenario::load("sphere", &registry).expect("it is built in");
         let place = Place { segment: Some(2), finger: Some(1), ..Place::default() };
         assert_eq!(place_text(&place, &scenario.problem), "segment 2, finger `north`");
         assert_eq!(place_text(&Place::default(), &scenario.problem), "");

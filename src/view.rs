@@ -7,7 +7,7 @@ mod replay;
 use crate::args::PlanArgs;
 use crate::{Failure, say};
 use regrasp::plan::Plan;
-use regrasp::study::{Run, Setup};
+use regrasp::run::{Run, Setup};
 use regrasp::view::Extras;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

@@ -4,7 +4,7 @@ use regrasp::Stopwatch;
 use regrasp::api::Interrupt;
 use regrasp::plan::StoppedBy;
 use regrasp::planner::Clock;
-use regrasp::study::Stop;
+use regrasp::run::Stop;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};

@@ -3,10 +3,10 @@
 use regrasp::api::Uninterrupted;
 use regrasp::host::Registry;
 use regrasp::planner::{Clock, Silent};
+use regrasp::run::scenario;
 use regrasp::study::compare::{
     Change, Draft, Execution, Folder, Machine, RUN_THREAD, RunStatus, Seeds, execute, factorial, prepare,
 };
-use regrasp::study::scenario;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;

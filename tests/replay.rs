@@ -6,7 +6,7 @@ use regrasp::host::Registry;
 use regrasp::physics::{Happening, ReplayReport, ReplaySettings, SimulationSettings, Stage, replay};
 use regrasp::plan::{Motion, Plan, SegmentKind};
 use regrasp::planner::{Clock, Silent};
-use regrasp::study::{NeverStops, Run, RunOptions, Setup, scenario};
+use regrasp::run::{NeverStops, Run, RunOptions, Setup, scenario};
 use std::path::Path;
 
 struct NoClock;

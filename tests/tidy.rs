@@ -11,13 +11,26 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-api", &[]),
     ("regrasp-world", &["regrasp-api"]),
     ("regrasp-plan", &["regrasp-api"]),
-    ("regrasp-host", &["regrasp-api"]),
-    ("regrasp-planner", &["regrasp-api", "regrasp-plan"]),
+    ("regrasp-abi", &["regrasp-api"]),
+    ("regrasp-host", &["regrasp-abi", "regrasp-api"]),
+    ("regrasp-planner", &["regrasp-abi", "regrasp-api", "regrasp-plan"]),
     ("regrasp-verify", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
     ("regrasp-view", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
     ("regrasp-conformance", &["regrasp-api", "regrasp-world"]),
     ("regrasp-export", &["regrasp-api", "regrasp-physics", "regrasp-plan", "regrasp-world"]),
     ("regrasp-physics", &["regrasp-api", "regrasp-world"]),
+    (
+        "regrasp-run",
+        &[
+            "regrasp-abi",
+            "regrasp-api",
+            "regrasp-host",
+            "regrasp-plan",
+            "regrasp-planner",
+            "regrasp-verify",
+            "regrasp-world",
+        ],
+    ),
 ];
 
 /// Packages that may use everything but the command line.
@@ -34,7 +47,7 @@ const PRIVATE: &[(&str, &[&str])] = &[
     ("libloading", &["regrasp-host"]),
     ("object", &["regrasp-host"]),
     ("inventory", &["regrasp-api", "regrasp-host", "plugins"]),
-    ("toml", &["regrasp-study", "regrasp"]),
+    ("toml", &["regrasp-run", "regrasp"]),
     ("clap", &["regrasp"]),
     ("rapier3d-f64", &["regrasp-physics"]),
     ("faer", &["regrasp-surfaces"]),
@@ -100,7 +113,7 @@ fn allowed(package: &Package) -> Option<BTreeSet<&'static str>> {
     }
     // A dynamic shim exports one crate of plugins and does nothing else.
     if package.name == "regrasp-template-dynamic" {
-        return Some(["regrasp-api", "regrasp-template"].into());
+        return Some(["regrasp-abi", "regrasp-template"].into());
     }
     if package.name == "regrasp-local-planners" {
         // `rapier-checked` simulates.

@@ -7,7 +7,7 @@ use regrasp::api::{
 };
 use regrasp::plan::{MarginFrame, SegmentKind};
 use regrasp::planner::Fate;
-use regrasp::study::picture::{Picture, sheet};
+use regrasp::view::picture::{Picture, sheet};
 use std::error::Error;
 use std::f64::consts::TAU;
 

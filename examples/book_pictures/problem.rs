@@ -3,9 +3,9 @@
 use regrasp::api::{Configuration, Contact, Pose, Vec3};
 use regrasp::plan::Segment;
 use regrasp::planner::GraphRecord;
-use regrasp::study::picture::{Picture, Scene};
-use regrasp::study::scenario::Scenario;
-use regrasp::study::{Run, Setup};
+use regrasp::run::scenario::Scenario;
+use regrasp::run::{Run, Setup};
+use regrasp::view::picture::{Picture, Scene};
 use regrasp::world::ChainHand;
 use std::error::Error;
 

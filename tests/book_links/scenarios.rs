@@ -2,7 +2,7 @@
 
 use crate::tree::Tree;
 use regrasp::host::Registry;
-use regrasp::study::scenario::from_text;
+use regrasp::run::scenario::from_text;
 use std::path::Path;
 use toml::{Table, Value};
 

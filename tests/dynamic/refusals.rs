@@ -1,7 +1,7 @@
 //! Libraries that do not fit are refused, each with its own message, and nothing of them is loaded.
 
 use crate::workshop::{Said, faulty, run, written};
-use regrasp::api::{CONTRACT_VERSION, FINGERPRINT};
+use regrasp::abi::{CONTRACT_VERSION, FINGERPRINT};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;

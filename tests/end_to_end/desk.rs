@@ -85,7 +85,7 @@ impl Said {
 
 /// The text of a built-in scenario or hand with replacements; each must apply.
 pub fn built_in(name: &str, changes: &[(&str, &str)]) -> String {
-    let files = regrasp::study::scenario::SCENARIOS.iter().chain(regrasp::study::scenario::HANDS);
+    let files = regrasp::run::scenario::SCENARIOS.iter().chain(regrasp::run::scenario::HANDS);
     let mut text = files.clone().find(|file| file.name == name).expect("a built-in file").text.to_owned();
     for (from, to) in changes {
         assert!(text.contains(from), "`{from}` is not in `{name}`");

@@ -1,7 +1,7 @@
 //! The built-in scenarios, solved by the real binary: counts, verdicts and bytes, never wall time.
 
 use crate::desk::{Desk, built_in};
-use regrasp::study::scenario::SCENARIOS;
+use regrasp::run::scenario::SCENARIOS;
 use serde_json::Value;
 
 /// A plan file without the only thing in it that differs from run to run.

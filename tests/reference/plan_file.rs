@@ -1,7 +1,7 @@
 //! The page of plan files names every key that a plan has, and no other.
 
 use crate::{page, printed};
-use regrasp::host::check_schema;
+use regrasp::api::check_schema;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -60,7 +60,7 @@ const PLANS: [&str; 4] = [
 
 /// A ball, free fingertips, a given workspace, and a plate close by, which is then one of the nearest bodies.
 fn with_a_plate_and_a_workspace() -> String {
-    let files = regrasp::study::scenario::SCENARIOS;
+    let files = regrasp::run::scenario::SCENARIOS;
     let ball = files.iter().find(|file| file.name == "sphere-free").expect("a built-in scenario");
     let plate = "[[obstacle]]\nshape = { kind = \"box\", size = [0.2, 0.2, 0.01] }\npose = { position = [0.0, 0.0, 0.049] }\n\n\
                  [workspace]\nlower = [-0.02, -0.02, 0.08]\nupper = [0.02, 0.02, 0.1]\n\n[start]";
@@ -105,11 +105,11 @@ fn every_key_of_a_plan_is_documented_and_every_documented_key_occurs() {
 /// What the page says of `scenario.problem`: its keys are those of scenario files and hand files.
 fn scenario_and_hand_are_as_their_pages_say(problem: &Value) {
     let schema = |text: String| serde_json::from_str::<Value>(&text).expect("a schema is JSON");
-    let hand = schema(regrasp::study::scenario::hand_schema());
+    let hand = schema(regrasp::run::scenario::hand_schema());
     assert_eq!(check_schema(&problem["hand"], &hand), Ok(()));
     let mut rest: Map<String, Value> = problem.as_object().expect("a problem has keys").clone();
     rest.insert("hand".into(), json!({ "builtin": "four-finger" }));
-    let scenario = schema(regrasp::study::scenario::schema());
+    let scenario = schema(regrasp::run::scenario::schema());
     assert_eq!(check_schema(&Value::Object(rest), &scenario), Ok(()));
 }
 

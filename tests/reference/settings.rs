@@ -1,7 +1,8 @@
 //! Settings and keys: every one is described, and the ranges that the schemas state are those that are kept.
 
+use regrasp::api::unit;
 use regrasp::api::{Entry, Limits};
-use regrasp::host::{Registry, settings_schema, unit};
+use regrasp::host::{Registry, settings_schema};
 use serde_json::{Value, json};
 
 /// Words that tell that a number has no unit.
@@ -61,8 +62,8 @@ fn assert_described(whole: &Value, name: &str) {
 #[test]
 fn every_key_of_every_file_is_described_with_its_unit() {
     let schemas = [
-        ("scenario", regrasp::study::scenario::schema()),
-        ("hand", regrasp::study::scenario::hand_schema()),
+        ("scenario", regrasp::run::scenario::schema()),
+        ("hand", regrasp::run::scenario::hand_schema()),
         ("study", regrasp::study::compare::study_schema()),
     ];
     for (name, schema) in schemas {
@@ -124,7 +125,7 @@ fn plugins_keep_the_ranges_that_their_schemas_state() {
 
 #[test]
 fn scenarios_keep_the_ranges_of_limits_that_the_schema_states() {
-    let schema: Value = serde_json::from_str(&regrasp::study::scenario::schema()).expect("a schema is JSON");
+    let schema: Value = serde_json::from_str(&regrasp::run::scenario::schema()).expect("a schema is JSON");
     let mut checked = 0;
     for (table, definition) in
         [("tolerances", "Tolerances"), ("resolution", "Resolution"), ("budget", "Budget")]

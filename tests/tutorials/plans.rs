@@ -3,7 +3,7 @@
 use crate::TUTORIALS;
 use regrasp::host::{Choices, Registry, slot_by_name};
 use regrasp::planner::{Clock, Silent};
-use regrasp::study::{NeverStops, Run, RunOptions, Setup, scenario};
+use regrasp::run::{NeverStops, Run, RunOptions, Setup, scenario};
 
 // ANCHOR: link
 // A dependency alone registers nothing.

@@ -1,7 +1,7 @@
 //! Which plugin fills each slot, with which settings.
 
-use crate::{HostError, Registry, check_schema, fill_defaults};
-use regrasp_api::{Entry, Slot, unless_fault};
+use crate::{HostError, Registry};
+use regrasp_api::{Entry, Slot, check_schema, fill_defaults, unless_fault};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 

@@ -1,7 +1,8 @@
 //! What can go wrong between a choice of plugins and the objects that they become.
 
-use crate::{Departure, LoadError, did_you_mean};
+use crate::LoadError;
 use regrasp_api::{BuildError, CallError, SettingsError, Slot};
+use regrasp_api::{Departure, did_you_mean};
 use thiserror::Error;
 
 /// A plugin cannot be found, configured or built.

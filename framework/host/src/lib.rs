@@ -4,23 +4,15 @@
 //! and refuses duplicates. Further plugins come from libraries that are loaded at run time ([`load`]). The default choice of each slot, the paper's, lives here: the planner names no plugin.
 
 mod choice;
-mod departure;
 mod error;
 mod load;
-mod near;
 mod plugin_set;
 mod registry;
-mod schema;
 #[cfg(test)]
 mod test_plugins;
-mod unit;
 
 pub use choice::*;
-pub use departure::*;
 pub use error::*;
 pub use load::*;
-pub use near::*;
 pub use plugin_set::*;
 pub use registry::*;
-pub use schema::*;
-pub use unit::*;

@@ -2,9 +2,10 @@
 
 use crate::choice::settings_text;
 use crate::{Choice, Choices, HostError, Registry, Source};
+use regrasp_abi::{Guardable, guarded};
 use regrasp_api::{
-    Build, BuildError, Built, ClosedChainSampler, ContactModel, GraphStrategy, Guardable, LocalPlanner,
-    Parts, Slot, StabilityTest, SurfaceParam, guarded, unless_fault,
+    Build, BuildError, Built, ClosedChainSampler, ContactModel, GraphStrategy, LocalPlanner, Parts, Slot,
+    StabilityTest, SurfaceParam, unless_fault,
 };
 
 /// A plugin object for each slot.

@@ -1,7 +1,7 @@
 //! The plugins that this program has.
 
-use crate::{HostError, LoadError, inspect, near, open};
-use regrasp_api::{Entry, Role, Slot, inventory};
+use crate::{HostError, LoadError, inspect, open};
+use regrasp_api::{Entry, Role, Slot, inventory, near};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -7,9 +7,9 @@ use crate::endpoints::Finder;
 use crate::graph::Graph;
 use crate::session::{Call, Counted, Session};
 use crate::view::LegView;
+use regrasp_abi::GuardedService;
 use regrasp_api::{
-    Action, CallError, Configuration, EdgeId, FingerSet, GraphView, GuardedService, NodeId, Slot, Tally,
-    Target, Task,
+    Action, CallError, Configuration, EdgeId, FingerSet, GraphView, NodeId, Slot, Tally, Target, Task,
 };
 use regrasp_plan::Segment;
 use std::collections::VecDeque;

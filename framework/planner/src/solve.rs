@@ -8,7 +8,8 @@ use crate::report::Outcome;
 use crate::request::Request;
 use crate::run::Run;
 use crate::session::Session;
-use regrasp_api::{Admissible, FingerSet, GuardedService, Pose, PoseDescription, Problem, Tally, Task, Vec3};
+use regrasp_abi::GuardedService;
+use regrasp_api::{Admissible, FingerSet, Pose, PoseDescription, Problem, Tally, Task, Vec3};
 use regrasp_plan::Statistics;
 use std::collections::BTreeSet;
 

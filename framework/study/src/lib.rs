@@ -1,8 +1,3 @@
-//! Scenario files, and what is done with them: building hand, object and plugins, planning, verifying.
+//! Comparisons of plugin combinations: studies, their runs, statistics and reports.
 
 pub mod compare;
-pub mod picture;
-mod run;
-pub mod scenario;
-
-pub use run::*;

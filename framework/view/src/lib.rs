@@ -14,6 +14,7 @@ mod html;
 mod mesh;
 mod motion;
 mod number;
+pub mod picture;
 mod scene;
 
 pub use error::ViewError;

@@ -3,7 +3,7 @@
 use regrasp_api::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-regrasp_api::export_plugins!(
+regrasp_abi::export_plugins!(
     CONE,
     STABILITY,
     SURFACE,

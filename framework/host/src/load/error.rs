@@ -46,7 +46,7 @@ pub enum LoadError {
     /// The library exports no plugins.
     #[error(
         "`{}` is a library without Regrasp plugins; the crate of a plugin library is of type `cdylib` and says \
-         `regrasp_api::export_plugins!(my_plugin::ENTRY);` (`regrasp new-plugin` writes one)",
+         `regrasp_abi::export_plugins!(my_plugin::ENTRY);` (`regrasp new-plugin` writes one)",
         .path.display()
     )]
     NoPlugins {

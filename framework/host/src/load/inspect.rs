@@ -2,7 +2,7 @@
 
 use super::{Difference, LoadError};
 use object::{Object, ObjectKind, ObjectSection};
-use regrasp_api::{CONTRACT_KEY, FINGERPRINT, SECTION};
+use regrasp_abi::{CONTRACT_KEY, FINGERPRINT, SECTION};
 use std::path::{Path, PathBuf};
 
 /// A library that was read, and fits this program.

@@ -2,7 +2,8 @@
 #![allow(unsafe_code)]
 
 use super::{Inspected, LoadError};
-use regrasp_api::{EXPORT_NAME, Entry, ExportFunction, own_faults};
+use regrasp_abi::{EXPORT_NAME, ExportFunction};
+use regrasp_api::{Entry, own_faults};
 
 /// Loads the library for good and hands out its plugins.
 pub(crate) fn open(inspected: &Inspected) -> Result<Vec<&'static Entry>, LoadError> {

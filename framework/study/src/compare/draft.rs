@@ -2,11 +2,11 @@
 
 use super::{LeftOut, Machine, RunKey, Seeds, Shard, Study, StudyFormat, StudyScenario, Variant};
 use super::{STUDY_VERSION, StudyError};
-use crate::scenario::Scenario;
-use crate::{RunError, Setup};
 use regrasp_api::Slot;
 use regrasp_host::{Choices, HostError, Registry};
 use regrasp_plan::PluginChoice;
+use regrasp_run::scenario::Scenario;
+use regrasp_run::{RunError, Setup};
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
 

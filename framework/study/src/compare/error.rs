@@ -1,7 +1,7 @@
 //! Why a study is refused, or cannot go on.
 
-use crate::RunError;
 use regrasp_plan::WriteError;
+use regrasp_run::RunError;
 use std::{io, path::PathBuf};
 use thiserror::Error;
 

@@ -2,10 +2,10 @@
 
 use super::timed::{self, Meter};
 use super::{Folder, Prepared, RunKey, RunName, RunRecord, StudyError};
-use crate::{RunOptions, Setup, Stop};
 use regrasp_api::{Interrupt, take_fault};
 use regrasp_plan::{Plan, StoppedBy};
 use regrasp_planner::{Clock, Silent};
+use regrasp_run::{RunOptions, Setup, Stop};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

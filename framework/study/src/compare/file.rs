@@ -1,9 +1,9 @@
 //! Study files: comparisons that are too long for a command line, or that are to be kept.
 
 use super::{Change, VariantDraft, factorial};
-use crate::scenario::{self, Document, PluginTable, PluginTables, Scenario, ScenarioError, key_path};
 use regrasp_api::Slot;
 use regrasp_host::{Registry, slot_by_name};
+use regrasp_run::scenario::{self, Document, PluginTable, PluginTables, Scenario, ScenarioError, key_path};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;

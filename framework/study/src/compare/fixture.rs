@@ -12,7 +12,7 @@ const SCENARIO: &str = include_str!("../../../../scenarios/sphere.toml");
 /// Two scenarios, the second with a hostile name, and these variants; 12 seeds.
 pub fn study(variants: &[&str]) -> Study {
     let registry = Registry::linked().unwrap();
-    let scenario = crate::scenario::from_text("sphere", SCENARIO, Path::new(""), &registry).unwrap();
+    let scenario = regrasp_run::scenario::from_text("sphere", SCENARIO, Path::new(""), &registry).unwrap();
     let choice = |name: &&str| {
         let settings = serde_json::json!({ "note": "a, \"b\" <i>" });
         BTreeMap::from([(Slot::Sampler, PluginChoice { id: format!("sampler/{name}"), settings })])

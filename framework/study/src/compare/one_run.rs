@@ -1,10 +1,10 @@
 //! One run in figures.
 
 use super::{Certified, Counts, MotionFigures, RunRecord, RunStatus, Times};
-use crate::{Run, RunError};
 use regrasp_api::{CallError, Configuration, Hand, JointKind, angle_between};
 use regrasp_plan::{Extreme, Motion, StoppedBy};
 use regrasp_planner::Status;
+use regrasp_run::{Run, RunError};
 use std::collections::BTreeMap;
 
 /// Which run a record is of.

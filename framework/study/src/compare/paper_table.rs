@@ -2,7 +2,7 @@
 
 use super::statistics::{quantile, sorted};
 use super::{Figure, RunRecord, RunStatus};
-use crate::scenario::PaperFigures;
+use regrasp_run::scenario::PaperFigures;
 
 /// A scenario's runs beside what was published about it.
 pub struct PaperRow<'a> {

@@ -1,9 +1,9 @@
 //! What a study is: everything that is needed to repeat it, the content of `study.json`.
 
 use super::RunRecord;
-use crate::scenario::PaperFigures;
 use regrasp_api::{Problem, Slot};
 use regrasp_plan::PluginChoice;
+use regrasp_run::scenario::PaperFigures;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

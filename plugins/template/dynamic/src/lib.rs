@@ -1,6 +1,6 @@
 //! The template's plugins as a library that is loaded at run time.
 
-regrasp_api::export_plugins!(
+regrasp_abi::export_plugins!(
     regrasp_template::contact_model::ENTRY,
     regrasp_template::stability_test::ENTRY,
     regrasp_template::surface::ENTRY,

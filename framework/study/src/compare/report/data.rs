@@ -4,8 +4,8 @@ use super::pairs::{Pair, best, pairs};
 use crate::compare::statistics::{BoxPlot, Estimate, ecdf, log_box_plot};
 use crate::compare::summary::finding;
 use crate::compare::{CLEARANCE, Cell, FRAMEWORK, Figure, LeftOut, Machine, RunStatus, Study, StudyScenario};
-use crate::scenario::PaperFigures;
 use regrasp_api::{Reason, Slot};
+use regrasp_run::scenario::PaperFigures;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

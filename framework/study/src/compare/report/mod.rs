@@ -25,7 +25,7 @@ pub fn html(study: &Study, rows: &[Vec<Cell<'_>>], strips: &[Option<String>]) ->
     let data =
         serde_json::to_string(&page_data(study, rows, strips)).expect("plain data is written without fault");
     let parts = [
-        ("/*STYLE*/", format!("{}{STYLE}", crate::picture::STYLE)),
+        ("/*STYLE*/", format!("{}{STYLE}", regrasp_view::picture::STYLE)),
         // Within a script a `<` could end it (`</script>`) or hide its end (`<!--`); in JSON it only occurs in strings.
         ("/*DATA*/", data.replace('<', "\\u003c")),
         ("/*SCRIPT*/", SCRIPT.concat()),

@@ -1,8 +1,8 @@
 //! A scenario's picture: a plan at a few moments, side by side.
 
-use crate::picture::{Bounds, Picture, Scene};
 use regrasp_api::Configuration;
 use regrasp_plan::{Plan, configuration};
+use regrasp_view::picture::{Bounds, Picture, Scene};
 use regrasp_world::{ChainHand, load_object};
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! The guard of each role.
 
-use super::guard::{Guard, Guardable};
-use crate::{
+use crate::guard::{Guard, Guardable};
+use regrasp_api::{
     Action, Assessment, CallError, ClosedChainSampler, Cone, Configuration, Contact, ContactModel, Context,
     Criterion, FingerIndex, FingerSet, GraphStrategy, GraphView, Grasp, Hint, LocalPlanner, MAX_FINGERS,
     Path, PerFinger, Pose, PoseRequest, Projection, Random, Reached, Stability, StabilityTest, SurfaceParam,

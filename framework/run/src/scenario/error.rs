@@ -1,6 +1,7 @@
 //! Why a scenario is refused: always with the file and, where there is one, the key, the line and the likely fix.
 
-use regrasp_host::{Fault, HostError, did_you_mean};
+use regrasp_api::{Fault, did_you_mean};
+use regrasp_host::HostError;
 use std::fmt;
 use thiserror::Error;
 

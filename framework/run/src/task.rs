@@ -1,6 +1,6 @@
 //! The plugins of a run, called by hand.
 
-use super::{RunError, Setup};
+use crate::{RunError, Setup};
 use regrasp_api::{Configuration, Context, FingerSet, Task, Vec3};
 use regrasp_host::PluginSet;
 use regrasp_planner::Leavable;

@@ -1,7 +1,7 @@
 //! Guards round plugins that panic.
 
-use super::*;
 use crate::*;
+use regrasp_api::*;
 
 struct Panics;
 
@@ -149,16 +149,16 @@ fn guards_pass_on_every_method_of_every_trait() {
     let roles = include_str!("roles.rs");
     let services = include_str!("services.rs");
     let traits = [
-        ("ContactModel", include_str!("../roles/contact_model.rs"), roles),
-        ("StabilityTest", include_str!("../roles/stability_test.rs"), roles),
-        ("SurfaceParam", include_str!("../roles/surface_param.rs"), roles),
-        ("ClosedChainSampler", include_str!("../roles/closed_chain_sampler.rs"), roles),
-        ("LocalPlanner", include_str!("../roles/local_planner.rs"), roles),
-        ("GraphStrategy", include_str!("../roles/graph_strategy.rs"), roles),
-        ("GraphView", include_str!("../roles/graph_strategy.rs"), services),
-        ("Hand", include_str!("../services/hand.rs"), services),
-        ("Clearance", include_str!("../services/clearance.rs"), services),
-        ("Admissible", include_str!("../task.rs"), services),
+        ("ContactModel", include_str!("../../api/src/roles/contact_model.rs"), roles),
+        ("StabilityTest", include_str!("../../api/src/roles/stability_test.rs"), roles),
+        ("SurfaceParam", include_str!("../../api/src/roles/surface_param.rs"), roles),
+        ("ClosedChainSampler", include_str!("../../api/src/roles/closed_chain_sampler.rs"), roles),
+        ("LocalPlanner", include_str!("../../api/src/roles/local_planner.rs"), roles),
+        ("GraphStrategy", include_str!("../../api/src/roles/graph_strategy.rs"), roles),
+        ("GraphView", include_str!("../../api/src/roles/graph_strategy.rs"), services),
+        ("Hand", include_str!("../../api/src/services/hand.rs"), services),
+        ("Clearance", include_str!("../../api/src/services/clearance.rs"), services),
+        ("Admissible", include_str!("../../api/src/task.rs"), services),
     ];
     for (name, declared, guards) in traits {
         let guard = if guards == roles { "Guard<dyn" } else { "GuardedService<'_, dyn" };

@@ -14,8 +14,8 @@ thread_local! {
 #[derive(Clone, Copy)]
 #[doc(hidden)]
 pub struct Faults {
-    pub(super) report: fn(CallError),
-    pub(super) pending: fn() -> Option<CallError>,
+    report: fn(CallError),
+    pending: fn() -> Option<CallError>,
 }
 
 static HOST: OnceLock<Faults> = OnceLock::new();

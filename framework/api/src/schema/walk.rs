@@ -249,7 +249,7 @@ fn depart(path: &KeyPath, fault: Fault) -> Departure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use regrasp_api::{Limits, ObjectDescription};
+    use crate::{Limits, ObjectDescription};
     use serde_json::json;
 
     fn schema_of<T: schemars::JsonSchema>() -> Value {
@@ -280,7 +280,7 @@ mod tests {
 
     #[test]
     fn a_struct_without_fields_has_no_keys() {
-        let text = refusal::<regrasp_api::NoSettings>(json!({"edges": 3}));
+        let text = refusal::<crate::NoSettings>(json!({"edges": 3}));
         assert_eq!(text, "`edges`: unknown key; there are none here");
     }
 
@@ -308,7 +308,7 @@ mod tests {
     #[test]
     fn defaults_fill_what_is_absent_and_keep_what_is_there() {
         let mut settings = Map::from_iter([("smoothing".to_owned(), json!(2))]);
-        fill_defaults(&mut settings, &schema_of::<regrasp_api::Budget>());
+        fill_defaults(&mut settings, &schema_of::<crate::Budget>());
         assert_eq!(Value::Object(settings), json!({"max_nodes": 1000, "smoothing": 2}));
     }
 }

@@ -1,7 +1,7 @@
 //! A TOML file as plain data that remembers its lines.
 
 use super::{Place, ScenarioError};
-use regrasp_host::{KeyPath, Step, check_schema};
+use regrasp_api::{KeyPath, Step, check_schema};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;

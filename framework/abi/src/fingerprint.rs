@@ -27,8 +27,8 @@ pub const CONTRACT_KEY: &str = "contract";
 
 /// The fingerprint of this build: lines `key: value`, the contract's version first.
 ///
-/// Rust promises no layout of types, vtables or calls between compilers, and a changed field in this crate changes
-/// layouts under the same compiler; so all of it is compared: contract version, a hash of this crate's sources, its features, nalgebra's
+/// Rust promises no layout of types, vtables or calls between compilers, and a changed field in `regrasp-api` changes
+/// layouts under the same compiler; so all of it is compared: contract version, hashes of the sources of `regrasp-api` and of this crate, features, nalgebra's
 /// version, compiler and commit, target, CPU features, panic strategy. Optimisation and debug assertions change no layout and
 /// are left out: a plugin built for release works in a host built for debugging.
 pub const FINGERPRINT: &str = concat!(
@@ -85,6 +85,7 @@ mod tests {
         let expected = [
             "contract",
             "api sources",
+            "abi sources",
             "api features",
             "nalgebra",
             "compiler",
@@ -96,7 +97,7 @@ mod tests {
         assert_eq!(keys, expected);
         assert!(lines.iter().all(|(_, value)| !value.is_empty()));
         assert_eq!(lines[1].1.len(), 32);
-        assert_eq!(lines[3].1.split('.').count(), 3, "a whole version: {}", lines[3].1);
+        assert_eq!(lines[4].1.split('.').count(), 3, "a whole version: {}", lines[4].1);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Entries whose functions and objects are guarded.
 
-use super::guard::{caught, guarded, guarded_check};
-use crate::{
+use crate::guard::{caught, guarded, guarded_check};
+use regrasp_api::{
     Build, BuildError, Built, ClosedChainSampler, ContactModel, Entry, GraphStrategy, LocalPlanner, Parts,
     SettingsError, StabilityTest, SurfaceParam,
 };
@@ -50,7 +50,7 @@ impl<E: Exported> GuardedEntry<E> {
 
     fn schema() -> String {
         caught(E::ENTRY.id, || (E::ENTRY.schema)()).unwrap_or_else(|fault| {
-            crate::report_fault(fault);
+            regrasp_api::report_fault(fault);
             "{}".into()
         })
     }

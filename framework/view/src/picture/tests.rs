@@ -1,7 +1,9 @@
 use super::*;
-use crate::scenario::{Scenario, load};
 use regrasp_api::{Hand, PerFinger, Pose, Vec3};
+use regrasp_contact_models as _;
 use regrasp_host::Registry;
+use regrasp_local_planners as _;
+use regrasp_run::scenario::{Scenario, load};
 
 fn scenario(name: &str) -> Scenario {
     load(name, &Registry::linked().unwrap()).unwrap()

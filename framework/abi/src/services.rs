@@ -2,10 +2,10 @@
 //!
 //! A plugin that asks for finger 9 makes the framework panic while the plugin calls it. Were the plugin in a library of its own, the panic
 //! could not cross it, and the process would be aborted. So the framework catches it on its own side: the call gets a harmless
-//! value, and the panic becomes the thread's fault ([`crate::report_fault`]).
+//! value, and the panic becomes the thread's fault ([`regrasp_api::report_fault`]).
 
-use super::guard::{Guard, caught};
-use crate::{
+use crate::guard::{Guard, caught};
+use regrasp_api::{
     Admissible, Body, BodyPair, CallError, Clearance, ComponentId, Configuration, Context, EdgeId, EdgeKind,
     EdgeView, FingerIndex, FingerJoints, FingerModel, FingerSet, Fingertip, GraphView, Hand, LoneFinger,
     NodeId, PairDistance, Pose, Reason, Rotation, Task, TipJacobian, TipKinematics, TipRule, Vec3,
@@ -20,7 +20,7 @@ const UNKNOWN: BodyPair = (Body::Palm, Body::Object);
 
 fn served<R>(service: &str, call: impl FnOnce() -> R, harmless: impl FnOnce() -> R) -> R {
     caught(service, call).unwrap_or_else(|fault| {
-        crate::report_fault(fault);
+        regrasp_api::report_fault(fault);
         harmless()
     })
 }

@@ -13,9 +13,10 @@ pub use error::*;
 pub use file::*;
 pub use library::*;
 
-pub(crate) use document::{Document, key_path};
+pub use document::{Document, key_path};
 use regrasp_api::{HandDescription, ObjectModel, Problem, Slot};
-use regrasp_host::{Choices, HostError, Registry, Step, near};
+use regrasp_api::{Step, near};
+use regrasp_host::{Choices, HostError, Registry};
 use regrasp_world::{ChainHand, check_problem, check_units, embed_object, embed_obstacles, load_object};
 use std::io::ErrorKind;
 use std::path::Path;
@@ -125,7 +126,8 @@ fn with_hint(error: ScenarioError, path: &Path) -> ScenarioError {
     ScenarioError::Unreadable { place, cause: format!("{cause}; {hint}") }
 }
 
-pub(crate) fn read(path: &Path) -> Result<String, ScenarioError> {
+/// The text of a file, which must be UTF-8.
+pub fn read(path: &Path) -> Result<String, ScenarioError> {
     let unreadable =
         |cause: String| ScenarioError::Unreadable { place: Place::file(&path.display().to_string()), cause };
     let bytes = std::fs::read(path).map_err(|error| match error.kind() {

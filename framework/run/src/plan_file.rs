@@ -1,6 +1,6 @@
 //! The plan file of an outcome.
 
-use super::{RunError, Setup};
+use crate::{RunError, Setup};
 use regrasp_api::Contact;
 use regrasp_plan::{
     Claims, ConeClaim, ContactClaim, Format, MarginFrame, Motion, Plan, PluginChoice, ResolvedScenario,
@@ -40,7 +40,7 @@ impl Setup<'_> {
         ResolvedScenario {
             name: self.scenario.name.clone(),
             problem: self.scenario.problem.clone(),
-            plugins: self.choices.iter().map(|(slot, choice)| (slot, plugin(choice))).collect(),
+            plugins: self.choices().iter().map(|(slot, choice)| (slot, plugin(choice))).collect(),
         }
     }
 
@@ -55,7 +55,7 @@ impl Setup<'_> {
             states.flat_map(|q| q.contacts.iter().filter_map(|(_, contact)| contact.as_ref())).map(cone);
         let first = cones.next().flatten();
         let cone = first.filter(|_| cones.all(|other| other == first));
-        let model = self.choices.choice(regrasp_api::Slot::ContactModel).id.clone();
+        let model = self.choices().choice(regrasp_api::Slot::ContactModel).id.clone();
         Claims {
             contact: ContactClaim { model, cone },
             criterion: self.plugins.stability.criterion(),

@@ -1,13 +1,10 @@
 //! One run: from a scenario to a plan that was verified.
 
-mod error;
-mod plan_file;
-mod task;
-
-pub use error::*;
-
+use crate::RunError;
+use crate::error;
 use crate::scenario::{Scenario, ScenarioError};
-use regrasp_api::{Clearance, GuardedService, Hand, Interrupt, Parts, Pose, PoseDescription};
+use regrasp_abi::GuardedService;
+use regrasp_api::{Clearance, Hand, Interrupt, Parts, Pose, PoseDescription};
 use regrasp_host::{Choices, PluginSet, Registry, Source};
 use regrasp_plan::{Plan, StoppedBy};
 use regrasp_planner::{Clock, Drivers, Outcome, PlanError, Progress, Request, Status, Stuck};
@@ -101,16 +98,16 @@ impl Run {
 }
 
 /// The planner, or something around it.
-type Solve<'s> = &'s dyn Fn(&Request<'_>) -> Result<Outcome, PlanError>;
+pub type Solve<'s> = &'s dyn Fn(&Request<'_>) -> Result<Outcome, PlanError>;
 
 /// A scenario with its plugins built, ready to be planned with any seed.
 pub struct Setup<'a> {
-    scenario: &'a Scenario,
+    pub(crate) scenario: &'a Scenario,
     choices: Choices,
-    clearance: SceneClearance,
+    pub(crate) clearance: SceneClearance,
     /// The object's at the start and at the goals, in turn.
-    poses: Vec<Pose>,
-    plugins: PluginSet,
+    pub(crate) poses: Vec<Pose>,
+    pub(crate) plugins: PluginSet,
     /// Whether some plugin comes from a library: a panic of hand or clearance could not leave it.
     has_loaded: bool,
 }
@@ -154,7 +151,7 @@ impl<'a> Setup<'a> {
     }
 
     /// Plans with `solve`, which calls the planner with the request or with a changed one, and verifies.
-    pub(crate) fn run_by(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Run, RunError> {
+    pub fn run_by(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Run, RunError> {
         let run = self.plan_and_verify(solve, options);
         // A plugin that panicked outside the planner's own calls, say while cones were written down, spoils the whole.
         match regrasp_api::take_fault() {

@@ -9,7 +9,8 @@ use std::process::Command;
 fn main() {
     let folder = PathBuf::from(variable("CARGO_MANIFEST_DIR"));
     let text = [
-        ("api sources", sources(&folder.join("src"))),
+        ("api sources", sources(&folder.join("../api/src"))),
+        ("abi sources", sources(&folder.join("src"))),
         ("api features", features()),
         ("nalgebra", nalgebra(&folder)),
         ("compiler", compiler("release")),
@@ -21,6 +22,7 @@ fn main() {
     let output = Path::new(&variable("OUT_DIR")).join("fingerprint.txt");
     fs::write(output, lines).expect("cargo's own output folder can be written to");
     println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=../api/src");
     println!("cargo:rerun-if-changed=src");
 }
 

@@ -26,7 +26,7 @@ pub enum RunError {
 }
 
 impl RunError {
-    pub(super) fn of_planner(scenario: &Scenario, error: PlanError) -> Self {
+    pub(crate) fn of_planner(scenario: &Scenario, error: PlanError) -> Self {
         match error {
             PlanError::Call(error) => Self::Call(error),
             PlanError::Collision { end, pair } => Self::Scenario(scenario.refuse(&collision(
@@ -44,7 +44,7 @@ impl RunError {
 }
 
 /// The message for two bodies that are too close at the place `key`.
-pub(super) fn collision(scenario: &Scenario, key: &str, pair: BodyPair, fix: &str) -> String {
+pub(crate) fn collision(scenario: &Scenario, key: &str, pair: BodyPair, fix: &str) -> String {
     let problem = &scenario.problem;
     let clear = problem.limits.tolerances.clearance + problem.limits.resolution.clearance;
     let [a, b] = [pair.0, pair.1].map(|body: Body| problem.name_of(body));

@@ -1,21 +1,6 @@
-//! How a library of plugins that is loaded at run time presents itself: the export macro, the fingerprint, the guard.
+//! What a plugin library exports, and the macro that writes it.
 
-mod entry;
-mod fault;
-mod fingerprint;
-mod guard;
-mod roles;
-mod services;
-#[cfg(test)]
-mod tests;
-
-pub use entry::*;
-pub use fault::*;
-pub use fingerprint::*;
-pub use guard::{Guardable, guarded};
-pub use services::*;
-
-use crate::Entry;
+use regrasp_api::{Entry, Faults};
 
 /// What a plugin library hands to the host that loads it.
 #[doc(hidden)]
@@ -36,12 +21,12 @@ pub const EXPORT_NAME: &str = "regrasp_plugins";
 /// Makes a library of type `cdylib` loadable at run time: exports the plugins whose entries are named.
 ///
 /// ```ignore
-/// regrasp_api::export_plugins!(my_plugin::ENTRY);
+/// regrasp_abi::export_plugins!(my_plugin::ENTRY);
 /// ```
 ///
 /// Each argument is the path of a `const` of type [`Entry`]. The expansion is one exported function, and a section of the file with the
-/// [`FINGERPRINT`] and the plugins' ids, which the host reads before it loads anything. Every function of an entry and every object that it
-/// builds is put behind a guard that turns panics into errors ([`crate::CallError::Panicked`]).
+/// [`crate::FINGERPRINT`] and the plugins' ids, which the host reads before it loads anything. Every function of an entry and every object that it
+/// builds is put behind a guard that turns panics into errors ([`regrasp_api::CallError::Panicked`]).
 ///
 /// Use it once, in a crate of its own that is a `cdylib` and nothing else: two such crates linked into one program would both define
 /// the exported function.
@@ -64,10 +49,10 @@ macro_rules! export_plugins {
             #[cfg_attr(not(target_vendor = "apple"), unsafe(link_section = ".regrasp"))]
             static SECTION: [u8; $crate::length(PARTS)] = $crate::joined(PARTS);
 
-            static ENTRIES: &[$crate::Entry] = &[$({
+            static ENTRIES: &[$crate::api::Entry] = &[$({
                 struct Plugin;
                 impl $crate::Exported for Plugin {
-                    const ENTRY: $crate::Entry = $entry;
+                    const ENTRY: $crate::api::Entry = $entry;
                 }
                 $crate::GuardedEntry::<Plugin>::ENTRY
             }),+];
@@ -76,8 +61,8 @@ macro_rules! export_plugins {
 
             // SAFETY (of the attribute): a `cdylib` of plugins has this one function under this name.
             #[unsafe(no_mangle)]
-            extern "C" fn regrasp_plugins(faults: &$crate::Faults) -> &'static $crate::Library {
-                $crate::report_faults_to(*faults);
+            extern "C" fn regrasp_plugins(faults: &$crate::api::Faults) -> &'static $crate::Library {
+                $crate::api::report_faults_to(*faults);
                 &LIBRARY
             }
         };

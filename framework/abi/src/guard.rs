@@ -3,15 +3,15 @@
 //! A panic cannot cross from one Rust binary into another (the process is aborted), so a plugin library compiles the guard *into itself*;
 //! the host puts the same guard round the built-in plugins. Calls that return a `Result` give [`CallError::Panicked`]. Those that return
 //! plain values give a harmless one (a cone without friction, a contact on a sharp edge, infinitely far away) and report the panic as the
-//! thread's fault ([`crate::report_fault`]): [`crate::Context::proceed`] then ends the call, and the planner takes the fault in place of
+//! thread's fault ([`regrasp_api::report_fault`]): [`regrasp_api::Context::proceed`] then ends the call, and the planner takes the fault in place of
 //! the call's result.
 
-use crate::{BuildError, Built, CallError, SettingsError};
+use regrasp_api::{BuildError, Built, CallError, SettingsError};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A plugin object and its id, or an object of a service and the service's name.
-pub(super) struct Guard<T: ?Sized> {
+pub(crate) struct Guard<T: ?Sized> {
     pub plugin: &'static str,
     /// Always there, until the guard is dropped.
     object: Option<Box<T>>,
@@ -41,7 +41,7 @@ impl<T: ?Sized> Guard<T> {
     /// A call that returns a plain value; `harmless` takes its place after a panic.
     pub fn value<'a, R>(&'a self, call: impl FnOnce(&'a T) -> R, harmless: impl FnOnce() -> R) -> R {
         caught(self.plugin, || call(self.object())).unwrap_or_else(|fault| {
-            crate::report_fault(fault);
+            regrasp_api::report_fault(fault);
             harmless()
         })
     }
@@ -57,7 +57,7 @@ impl<T: ?Sized> Drop for Guard<T> {
 }
 
 /// Runs `call`; a panic becomes [`CallError::Panicked`].
-pub(super) fn caught<R>(plugin: &str, call: impl FnOnce() -> R) -> Result<R, CallError> {
+pub(crate) fn caught<R>(plugin: &str, call: impl FnOnce() -> R) -> Result<R, CallError> {
     // What a panic may have left half changed (random stream, counts, path) is thrown away with the failed call.
     catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
         let message = message(payload.as_ref());
@@ -81,7 +81,7 @@ pub fn guarded<T: Guardable + ?Sized>(plugin: &'static str, build: impl FnOnce()
 }
 
 /// A plugin's check of settings; a panic becomes a refusal.
-pub(super) fn guarded_check(
+pub(crate) fn guarded_check(
     plugin: &'static str,
     check: impl FnOnce() -> Result<(), SettingsError>,
 ) -> Result<(), SettingsError> {
