@@ -58,4 +58,19 @@ pub struct PlanCertificate {
     pub slip: Option<Extreme>,
     /// Largest distance between a holding fingertip and the surface (m). Absent where no finger holds.
     pub closure_residual: Option<Extreme>,
+    /// What the grasps hold within the joints' efforts. Absent where the plan holds no forces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub holds: Option<Holds>,
+}
+
+/// How far from failing the plan's grasps are, each figure with the place that decides it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Holds {
+    /// The smallest coefficient of friction at which every grasp still bears what it must (no unit).
+    pub friction: Extreme,
+    /// The largest mass of the object at which it does (kg).
+    pub mass: Extreme,
+    /// The largest disturbing force at the centre of mass, in any direction, at which it does (N).
+    pub disturbance: Extreme,
 }

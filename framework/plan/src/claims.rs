@@ -1,6 +1,6 @@
 //! What a plan claims of its contacts and grasps: the verifier holds it to that.
 
-use regrasp_api::{Cone, Fingertip, ObjectModel};
+use regrasp_api::{Cone, ConeEdge, Fingertip, ObjectModel};
 pub use regrasp_api::{Criterion, Load};
 use serde::{Deserialize, Serialize};
 
@@ -24,8 +24,43 @@ pub struct Claims {
 pub struct ContactClaim {
     /// Id of the contact model, such as `contact-model/pcwf`.
     pub model: String,
-    /// The cone of each contact; absent where it is not elliptic, and then stability is not independently checked.
+    /// The cone that all contacts share; absent where they do not, or it is not elliptic.
     pub cone: Option<ConeClaim>,
+    /// The cones of a plan whose contacts do not share one elliptic cone: each state names the one of each contact by its number here.
+    /// Without them too, stability is not independently checked.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cones: Vec<ConeRecord>,
+}
+
+/// A cone as recorded data: the wrenches that a contact transmits per unit of normal force.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ConeRecord {
+    /// |f_t|²/μ² + m²/γ² ≤ f_n².
+    Elliptic(ConeClaim),
+    /// The cone that these edges span.
+    Polyhedral(Vec<EdgeRecord>),
+}
+
+/// One edge of a polyhedral cone at unit normal force, with the tangents t1 = any_orthogonal(n) and t2 = n × t1 of the inward normal n.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EdgeRecord {
+    /// Tangential force along t1 and t2, no unit.
+    pub tangential: [f64; 2],
+    /// Torque about the inward normal per unit of normal force (m).
+    pub torsion: f64,
+}
+
+impl ConeRecord {
+    /// The record of a cone.
+    pub fn of(cone: &Cone<'_>) -> Self {
+        let edge = |edge: &ConeEdge| EdgeRecord { tangential: edge.tangential, torsion: edge.torsion };
+        match *cone {
+            Cone::Elliptic { mu, gamma } => Self::Elliptic(ConeClaim { mu, gamma }),
+            Cone::Polyhedral(edges) => Self::Polyhedral(edges.iter().map(edge).collect()),
+        }
+    }
 }
 
 /// An elliptic cone: |f_t|²/μ² + m²/γ² ≤ f_n².

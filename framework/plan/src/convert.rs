@@ -86,7 +86,10 @@ pub fn state_record(q: &Configuration, time: f64, hand: &dyn Hand) -> StateRecor
             orientation: [orientation.w, orientation.i, orientation.j, orientation.k],
         },
         joints: q.joints.iter().map(|(_, joints)| joints.to_vec()).collect(),
+        velocities: None,
         contacts: q.contacts.iter().map(contact).collect(),
+        cones: None,
+        forces: None,
     }
 }
 

@@ -72,15 +72,16 @@ pub enum ReadError {
     },
     /// A plan of another version.
     #[error(
-        "`{}` is a plan of format version {found}, this program reads version {known}; use the program that made it, or plan again",
-        path.display()
+        "`{}` is a plan of format version {found}, this program reads versions {} to {known}; use the program that made it, or plan again",
+        path.display(),
+        crate::OLDEST_VERSION
     )]
     Version {
         /// The file.
         path: PathBuf,
         /// The file's version.
         found: String,
-        /// Ours.
+        /// The newest that this program reads.
         known: u32,
     },
     /// A plan whose content does not have the format's form.

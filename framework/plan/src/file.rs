@@ -1,6 +1,6 @@
 //! Reading plan files.
 
-use crate::{Plan, ReadError, VERSION};
+use crate::{OLDEST_VERSION, Plan, ReadError, VERSION};
 use serde::Deserialize;
 use serde_json::{Value, error::Category};
 use std::io::ErrorKind;
@@ -38,7 +38,8 @@ pub fn from_json(bytes: &[u8], path: &Path) -> Result<Plan, ReadError> {
     if header.format.as_ref().and_then(Value::as_str) != Some("regrasp-plan") {
         return Err(ReadError::Format { path: path.to_owned(), found: found(header.format) });
     }
-    if header.version.as_ref().and_then(Value::as_u64) != Some(VERSION.into()) {
+    let known = u64::from(OLDEST_VERSION)..=u64::from(VERSION);
+    if !header.version.as_ref().and_then(Value::as_u64).is_some_and(|version| known.contains(&version)) {
         let found = found(header.version);
         return Err(ReadError::Version { path: path.to_owned(), found, known: VERSION });
     }

@@ -1,12 +1,14 @@
 //! What a plan file holds. SI units; keys in the order of the fields.
 
-use crate::{Claims, PlanCertificate, Statistics};
+use crate::{Claims, ObjectRecord, PlanCertificate, Statistics};
 use regrasp_api::{Problem, Slot};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The version of the format that this crate reads and writes.
-pub const VERSION: u32 = 1;
+/// The version of the format that this crate writes. It reads [`OLDEST_VERSION`] and all between.
+pub const VERSION: u32 = 2;
+/// The oldest version that this crate reads. What version 2 adds is optional, so that both are one type.
+pub const OLDEST_VERSION: u32 = 1;
 
 /// The name of the format, the file's first key.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,7 +25,7 @@ pub enum Format {
 pub struct Plan {
     /// Says that this is a plan file.
     pub format: Format,
-    /// [`VERSION`].
+    /// [`VERSION`]; older in plans that an older program made.
     pub version: u32,
     /// What was to be done, everything resolved: no file names, no defaults left out.
     pub scenario: ResolvedScenario,
@@ -31,6 +33,9 @@ pub struct Plan {
     pub seed: u64,
     /// Versions of the programs that made the plan, by name.
     pub versions: BTreeMap<String, String>,
+    /// What the program derived from the scenario's object; absent where contacts live on the object's own surface.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<ObjectRecord>,
     /// What the plan claims of its contacts and grasps.
     pub claims: Claims,
     /// For each goal that was reached, in turn: how many segments are done by then (0 where the start is the goal).
@@ -39,6 +44,9 @@ pub struct Plan {
     pub stopped_by: Option<StoppedBy>,
     /// How the search went.
     pub statistics: Statistics,
+    /// What the plugins have to say of the plan, each by its slot: names and values of their own, which nothing checks.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub notes: BTreeMap<Slot, PluginNotes>,
     /// What the verifier certifies; absent until it has.
     pub certificate: Option<PlanCertificate>,
     /// The motion.
@@ -56,6 +64,9 @@ pub struct ResolvedScenario {
     /// The plugin in each slot.
     pub plugins: BTreeMap<Slot, PluginChoice>,
 }
+
+/// What one plugin has to say of a plan.
+pub type PluginNotes = BTreeMap<String, serde_json::Value>;
 
 /// A plugin with its settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -112,8 +123,18 @@ pub struct StateRecord {
     pub object: PoseRecord,
     /// Joint positions (rad; m where prismatic): for each finger, base to tip.
     pub joints: Vec<Vec<f64>>,
+    /// Velocity of each joint (rad/s; m/s where prismatic), as `joints`; absent in plans of version 1. The cubic through positions and
+    /// velocities is what a trajectory controller plays.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocities: Option<Vec<Vec<f64>>>,
     /// For each finger its contact, or null where it does not hold the object.
     pub contacts: Vec<Option<ContactRecord>>,
+    /// For each contact its cone's number among `claims.contact.cones`; absent where all contacts share `claims.contact.cone`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cones: Option<Vec<Option<usize>>>,
+    /// For each finger the force that its contact exerts on the object, in O (N); null where it does not hold.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub forces: Option<Vec<Option<[f64; 3]>>>,
 }
 
 /// A pose.

@@ -12,6 +12,7 @@ mod format;
 mod json;
 mod motion;
 mod statistics;
+mod surface;
 mod timing;
 mod write;
 
@@ -24,5 +25,6 @@ pub use format::*;
 pub use json::*;
 pub use motion::*;
 pub use statistics::*;
+pub use surface::*;
 pub use timing::*;
 pub use write::*;

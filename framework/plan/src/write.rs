@@ -1,6 +1,6 @@
 //! Writing plan files, so that a failure never costs what was there before.
 
-use crate::{Plan, SegmentRecord, WriteError, write_json};
+use crate::{ContactSurface, Plan, StateRecord, WriteError, write_json};
 use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 ///
 /// What is no regular file, such as a pipe or `/dev/stdout`, is written in place; a symbolic link keeps pointing to its file.
 pub fn write(path: &Path, plan: &Plan) -> Result<(), WriteError> {
-    if let Some(place) = not_finite(&plan.segments) {
+    if let Some(place) = not_finite(plan) {
         return Err(WriteError::NotFinite { place });
     }
     write_file(path, |writer| write_json(plan, writer))
@@ -103,21 +103,35 @@ fn buffered(file: &File, put: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> 
     buffer.flush()
 }
 
-/// Names the first number of the motion that is not finite.
-fn not_finite(segments: &[SegmentRecord]) -> Option<String> {
-    let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
-    for (s, segment) in segments.iter().enumerate() {
-        for (k, state) in segment.states.iter().enumerate() {
-            let pose = finite(&state.object.position) && finite(&state.object.orientation);
-            let joints = state.joints.iter().all(|joints| finite(joints));
-            let contacts = state.contacts.iter().flatten();
-            let contacts = contacts.flat_map(|c| [c.point_O, c.normal_O, c.point_F]).all(|v| finite(&v));
-            if !(state.time.is_finite() && pose && joints && contacts) {
-                return Some(format!("a value in segment {s}, state {k},"));
-            }
+/// Names the first number of a plan that is not finite.
+fn not_finite(plan: &Plan) -> Option<String> {
+    let twin = plan.object.as_ref().and_then(|object| object.contact_surface.as_ref());
+    let twin_is_finite = |twin: &ContactSurface| {
+        twin.bound.is_finite() && twin.vertices.iter().flatten().all(|x| x.is_finite())
+    };
+    if !twin.is_none_or(twin_is_finite) {
+        return Some("a value in the object's contact surface".into());
+    }
+    for (s, segment) in plan.segments.iter().enumerate() {
+        if let Some(k) = segment.states.iter().position(|state| !is_finite(state)) {
+            return Some(format!("a value in segment {s}, state {k},"));
         }
     }
     None
+}
+
+fn is_finite(state: &StateRecord) -> bool {
+    let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
+    let rows = |rows: &[Vec<f64>]| rows.iter().all(|row| finite(row));
+    let mut contacts = state.contacts.iter().flatten().flat_map(|c| [c.point_O, c.normal_O, c.point_F]);
+    let mut forces = state.forces.iter().flatten().flatten();
+    state.time.is_finite()
+        && finite(&state.object.position)
+        && finite(&state.object.orientation)
+        && rows(&state.joints)
+        && state.velocities.as_ref().is_none_or(|velocities| rows(velocities))
+        && contacts.all(|v| finite(&v))
+        && forces.all(|f| finite(f))
 }
 
 #[cfg(test)]

@@ -53,7 +53,7 @@ fn the_motion_comes_back_exactly() {
 #[test]
 fn each_state_is_one_line_and_the_header_comes_first() {
     let text = text(&example());
-    assert!(text.starts_with("{\n  \"format\": \"regrasp-plan\",\n  \"version\": 1,\n  \"scenario\": {\n"));
+    assert!(text.starts_with("{\n  \"format\": \"regrasp-plan\",\n  \"version\": 2,\n  \"scenario\": {\n"));
     let states = text.lines().filter(|line| line.trim_start().starts_with("{\"time\": ")).count();
     assert_eq!(states, 12);
     assert!(text.ends_with("}\n"));
@@ -100,8 +100,8 @@ fn every_bad_file_is_refused_with_the_file_and_what_to_do() {
     check("{}", "`format` is missing");
     check("{\"format\": \"other\"}", "`format` is \"other\"");
     check(
-        &good.replace("\"version\": 1", "\"version\": 2"),
-        "format version 2, this program reads version 1",
+        &good.replace("\"version\": 2", "\"version\": 3"),
+        "format version 3, this program reads versions 1 to 2",
     );
     check(&good.replacen("\"seed\"", "\"sed\"", 1), "unknown field `sed`");
     check(&good.replacen("\"seed\": 7", "\"seed\": -7", 1), "-7");
@@ -127,6 +127,64 @@ fn a_failed_write_leaves_the_old_file() {
     assert!(matches!(write(&nowhere, &example()), Err(WriteError::NoFolder { .. })));
     write(&path, &example()).unwrap();
     assert_eq!(read(&path).unwrap(), example());
+}
+
+/// A plan with everything that version 2 adds.
+fn rich() -> Plan {
+    let mut plan = example();
+    let facets = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+    let vertices = vec![[0.0; 3], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]];
+    let twin = ContactSurface { vertices, facets, digest: "00ff".into(), bound: 1e-4 };
+    plan.object = Some(ObjectRecord { contact_surface: Some(twin) });
+    let edge = |x| EdgeRecord { tangential: [x, 0.1], torsion: 0.001 };
+    plan.claims.contact.cone = None;
+    plan.claims.contact.cones = vec![
+        ConeRecord::Elliptic(ConeClaim { mu: 0.5, gamma: 0.002 }),
+        ConeRecord::Polyhedral(vec![edge(0.5), edge(-0.5), edge(0.0)]),
+    ];
+    plan.notes.insert(regrasp_api::Slot::Sampler, [("hits".to_owned(), serde_json::json!(12))].into());
+    let figure = |value| Extreme { value, place: Place { segment: Some(1), ..Default::default() } };
+    let holds = Holds { friction: figure(0.31), mass: figure(0.4), disturbance: figure(2.5) };
+    plan.certificate = Some(PlanCertificate {
+        closure_margin: None,
+        clearance: None,
+        slip: Some(figure(1e-5)),
+        closure_residual: None,
+        holds: Some(holds),
+    });
+    for state in plan.segments.iter_mut().flat_map(|segment| &mut segment.states) {
+        state.velocities = Some(vec![vec![0.1, -0.2, 0.3]; 3]);
+        state.cones = Some(vec![None, Some(0), Some(1)]);
+        state.forces = Some(vec![None, Some([0.1, 0.2, -0.3]), Some([0.0, 1e-3, 0.5])]);
+    }
+    plan
+}
+
+#[test]
+fn what_version_2_adds_comes_back_exactly_and_its_numbers_are_finite() {
+    let plan = rich();
+    assert_eq!(parse(&text(&plan)).unwrap(), plan);
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |change: &dyn Fn(&mut Plan)| {
+        let mut plan = rich();
+        change(&mut plan);
+        write(&folder.path().join("p.json"), &plan).unwrap_err().to_string()
+    };
+    let state = |plan: &mut Plan, change: &dyn Fn(&mut StateRecord)| change(&mut plan.segments[2].states[1]);
+    let velocity = refused(&|p| state(p, &|s| s.velocities.as_mut().unwrap()[1][2] = f64::NAN));
+    let force = refused(&|p| state(p, &|s| s.forces.as_mut().unwrap()[2] = Some([f64::INFINITY; 3])));
+    assert!([velocity, force].iter().all(|message| message.contains("segment 2, state 1")));
+    let bound = |p: &mut Plan| p.object.as_mut().unwrap().contact_surface.as_mut().unwrap().bound = f64::NAN;
+    assert!(refused(&bound).contains("contact surface"));
+}
+
+#[test]
+fn plans_of_version_1_are_read_and_stay_what_they_are() {
+    let mut old = example();
+    old.version = 1;
+    let written = text(&old);
+    assert!(written.contains("\"version\": 1,\n") && !written.contains("velocities"));
+    assert_eq!(parse(&written).unwrap(), old);
 }
 
 proptest! {

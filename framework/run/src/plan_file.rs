@@ -23,6 +23,8 @@ impl Setup<'_> {
             scenario: self.resolved_scenario(),
             seed,
             versions: [("regrasp".to_owned(), env!("CARGO_PKG_VERSION").to_owned())].into(),
+            object: None,
+            notes: Default::default(),
             claims: self.claims(&outcome.motion),
             goals_reached: outcome.goal_ends.clone(),
             stopped_by,
@@ -57,7 +59,7 @@ impl Setup<'_> {
         let cone = first.filter(|_| cones.all(|other| other == first));
         let model = self.choices().choice(regrasp_api::Slot::ContactModel).id.clone();
         Claims {
-            contact: ContactClaim { model, cone },
+            contact: ContactClaim { model, cone, cones: vec![] },
             criterion: self.plugins.stability.criterion(),
             transfer_law: TransferLaw::of_fingertips(self.hand().fingertip()),
             margin: MarginFrame::of_object(object),

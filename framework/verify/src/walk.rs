@@ -183,6 +183,7 @@ impl Walk<'_> {
             clearance: sampled.clearance.extreme(),
             slip,
             closure_residual,
+            holds: None,
         };
         let mut checks = vec![Gauge::faults("form").check()];
         checks.push(motion_checks::quaternions(self.legs));

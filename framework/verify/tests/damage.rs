@@ -276,6 +276,7 @@ fn soft_fingers_have_no_torsion_in_transfers() {
         p.claims.contact = ContactClaim {
             model: "contact-model/soft-finger".into(),
             cone: Some(ConeClaim { mu: 0.8, gamma: 0.002 }),
+            cones: vec![],
         };
         let settings = serde_json::json!({"gamma": 0.002});
         let choice = PluginChoice { id: "contact-model/soft-finger".into(), settings };
@@ -326,7 +327,7 @@ fn claims() {
     assert_eq!(nan, ["stability", "claims"]);
     // A model of somebody else's is said to be unknown, and its cones unchecked if they are not elliptic.
     let verdict = judged(|p| {
-        p.claims.contact = ContactClaim { model: "contact-model/gecko".into(), cone: None };
+        p.claims.contact = ContactClaim { model: "contact-model/gecko".into(), cone: None, cones: vec![] };
         p.scenario.plugins.get_mut(&Slot::ContactModel).unwrap().id = "contact-model/gecko".into();
     });
     assert!(verdict.valid);

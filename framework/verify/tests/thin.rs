@@ -47,7 +47,10 @@ fn probe(kind: SegmentName, states: &[[f64; 3]], edit: impl FnOnce(&mut Problem)
         time: k as f64,
         object,
         joints: vec![q.to_vec()],
+        velocities: None,
         contacts: vec![None],
+        cones: None,
+        forces: None,
     };
     let finger = (kind == SegmentName::Regrasp).then_some(0);
     plan.segments =
@@ -168,6 +171,9 @@ fn touching(time: f64, [x, z]: [f64; 2], radius: f64) -> StateRecord {
         time,
         object: PoseRecord { position: [0.0; 3], orientation: [1.0, 0.0, 0.0, 0.0] },
         joints: vec![vec![x, 0.0, z]],
+        velocities: None,
         contacts: vec![Some(contact)],
+        cones: None,
+        forces: None,
     }
 }

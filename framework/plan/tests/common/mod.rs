@@ -129,11 +129,14 @@ pub fn plan(motion: &Motion, hand: &dyn Hand) -> Plan {
             plugins: BTreeMap::from([(Slot::Sampler, choice)]),
         },
         seed: 7,
+        object: None,
+        notes: BTreeMap::new(),
         versions: BTreeMap::from([("regrasp".into(), "0.1.0".into())]),
         claims: Claims {
             contact: ContactClaim {
                 model: "contact-model/pcwf".into(),
                 cone: Some(ConeClaim { mu: 0.8, gamma: 0.0 }),
+                cones: vec![],
             },
             criterion: Criterion::Closure,
             transfer_law: TransferLaw::Rolling,

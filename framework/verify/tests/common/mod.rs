@@ -170,11 +170,14 @@ pub fn plan_of(mut problem: Problem, hand: &ChainHand, motion: &Motion) -> Plan 
             plugins: BTreeMap::from([(Slot::ContactModel, choice)]),
         },
         seed: 0,
+        object: None,
+        notes: BTreeMap::new(),
         versions: BTreeMap::new(),
         claims: Claims {
             contact: ContactClaim {
                 model: "contact-model/pcwf".into(),
                 cone: Some(ConeClaim { mu: 0.8, gamma: 0.0 }),
+                cones: vec![],
             },
             criterion: Criterion::Closure,
             transfer_law,

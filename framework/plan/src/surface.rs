@@ -1,0 +1,27 @@
+//! The surface on which contacts live, where it is not the object's own.
+
+use serde::{Deserialize, Serialize};
+
+/// What the program derived from the scenario's object.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectRecord {
+    /// The twin of a rough mesh; absent where contacts live on the object's own surface.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact_surface: Option<ContactSurface>,
+}
+
+/// A twin of the object's surface, smooth at the scale of a fingertip: contacts live there. Clearance, mass and what may not be entered are
+/// those of the object's own surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactSurface {
+    /// The twin's vertices in the object's frame (m).
+    pub vertices: Vec<[f64; 3]>,
+    /// Its facets: three vertices each, counter-clockwise from outside.
+    pub facets: Vec<[u32; 3]>,
+    /// A digest of the mesh that it was made from, in hexadecimal digits.
+    pub digest: String,
+    /// No point of either surface is farther than this from the other surface (m).
+    pub bound: f64,
+}
