@@ -5,10 +5,8 @@ use crate::table::Table;
 use crate::{Failure, say, say_json};
 use clap::Args;
 use regrasp::api::{FingerIndex, Hand, HandDescription, JointDescription, Vec3};
-use regrasp::world::{
-    ChainHand, FingerWorkspace, ObjectPlace, UrdfHand, UrdfOptions, UrdfReport, finger_workspace,
-    object_place, read_urdf,
-};
+use regrasp::hands::{UrdfHand, UrdfOptions, UrdfReport, read_urdf};
+use regrasp::world::{ChainHand, FingerWorkspace, ObjectPlace, finger_workspace, object_place};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 

@@ -44,7 +44,7 @@ fn stages(motion: &Motion) -> Vec<Stage<'_>> {
 
 fn replayed(plan: &Plan, settings: &ReplaySettings) -> ReplayReport {
     let motion = regrasp::plan::motion(plan).unwrap();
-    replay(&plan.scenario.problem, Path::new(""), &stages(&motion), settings).unwrap()
+    replay(&plan.scenario.problem, &stages(&motion), settings).unwrap()
 }
 
 fn balanced(name: &str, seed: u64) -> Plan {

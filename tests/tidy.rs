@@ -9,7 +9,9 @@ use std::process::Command;
 /// Which packages of this project a package may use directly; `ARCHITECTURE.md` says why.
 const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-api", &[]),
+    ("regrasp-formats", &["regrasp-api"]),
     ("regrasp-world", &["regrasp-api"]),
+    ("regrasp-hands", &["regrasp-api", "regrasp-formats", "regrasp-world"]),
     ("regrasp-plan", &["regrasp-api"]),
     ("regrasp-abi", &["regrasp-api"]),
     ("regrasp-host", &["regrasp-abi", "regrasp-api"]),
@@ -24,6 +26,8 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "regrasp-abi",
             "regrasp-api",
+            "regrasp-formats",
+            "regrasp-hands",
             "regrasp-host",
             "regrasp-plan",
             "regrasp-planner",

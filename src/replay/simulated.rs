@@ -10,7 +10,6 @@ use regrasp::physics::{
 };
 use regrasp::plan::{Motion, Plan, SegmentKind};
 use serde_json::{Value, json};
-use std::path::Path;
 
 /// Slip of a contact (m) and gap between a holding fingertip and the object (m) that are worth a word.
 const SLIP: f64 = 1e-3;
@@ -54,7 +53,7 @@ impl<'a> Told<'a> {
         problem.gravity = args.gravity.unwrap_or(problem.gravity);
         let settings = settings(args, &problem);
         // A plan's meshes are given in place: there is no file to look for.
-        let report = replay(&problem, Path::new(""), &stages(&motion), &settings);
+        let report = replay(&problem, &stages(&motion), &settings);
         let report =
             report.map_err(|error| Failure::bad_input(format!("{}: {error}", args.plan.display())))?;
         Ok(Self { args, plan, motion, problem, settings, report })

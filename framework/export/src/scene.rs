@@ -7,7 +7,6 @@ use crate::{ExportError, File, Format};
 use regrasp_api::{Configuration, FingerIndex, Hand, HandDescription, ObjectModel, Pose, PoseDescription};
 use regrasp_plan::{Motion, Plan};
 use regrasp_world::ChainHand;
-use std::path::Path;
 
 /// A plan, its hand and its object, ready to be exported.
 pub struct Scene<'a> {
@@ -27,7 +26,7 @@ impl<'a> Scene<'a> {
     pub fn new(plan: &'a Plan) -> Result<Self, ExportError> {
         let problem = &plan.scenario.problem;
         let hand = ChainHand::new(problem.hand.clone())?;
-        let object = regrasp_world::load_object(&problem.object, Path::new(""))?;
+        let object = regrasp_world::load_object(&problem.object)?;
         let motion = regrasp_plan::motion(plan)?;
         if motion.segments.iter().all(|segment| segment.states.is_empty()) {
             return Err(ExportError::Empty);

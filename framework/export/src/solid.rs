@@ -7,7 +7,7 @@ use regrasp_api::{
     FingerDescription, Mesh, MeshError, ObstacleDescription, PlacedShape, Pose, Primitive, Problem, Rotation,
     Shape, Vec3,
 };
-use std::path::Path;
+use regrasp_world::WorldError;
 
 /// A solid with the pose of its frame in that of the body it belongs to.
 pub(crate) struct Piece {
@@ -118,7 +118,7 @@ fn piece(placed: &PlacedShape, key: &str) -> Result<Piece, ExportError> {
             (along(normal * *offset, &normal), Solid::HalfSpace)
         }
         Shape::Mesh(source) => {
-            let mesh = regrasp_world::load_mesh(source, Path::new(""), key)?;
+            let mesh = source.mesh().map_err(|error| WorldError::mesh(key, error))?;
             return Ok(Piece { X_BS, solid: Solid::Mesh, mesh });
         }
     };

@@ -6,22 +6,20 @@ use crate::finger::{FIXED, HULL, TIPS, groups};
 use rapier3d_f64::math::Pose as GlamPose;
 use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, SharedShape};
 use regrasp_api::{Mesh, PlacedShape, Problem, Shape, Vec3};
-use regrasp_world::load_mesh;
-use std::path::Path;
 
 /// A shape with its pose in H.
 pub(crate) type Placed = (GlamPose, SharedShape);
 
-/// The palm and the obstacles of a problem that the world has checked; mesh files are looked for relative to `base`.
-pub(crate) fn fixed_shapes(problem: &Problem, base: &Path) -> Result<Vec<Placed>, PhysicsError> {
+/// The palm and the obstacles of a problem that the world has checked.
+pub(crate) fn fixed_shapes(problem: &Problem) -> Result<Vec<Placed>, PhysicsError> {
     let obstacles = problem
         .obstacle
         .iter()
         .map(|obstacle| PlacedShape { shape: obstacle.shape.clone(), pose: obstacle.pose.clone() });
-    problem.hand.palm.iter().cloned().chain(obstacles).map(|placed| fixed_shape(&placed, base)).collect()
+    problem.hand.palm.iter().cloned().chain(obstacles).map(|placed| fixed_shape(&placed)).collect()
 }
 
-fn fixed_shape(placed: &PlacedShape, base: &Path) -> Result<Placed, PhysicsError> {
+fn fixed_shape(placed: &PlacedShape) -> Result<Placed, PhysicsError> {
     let pose = placed.pose.pose().map_err(PhysicsError::Shape)?;
     let (at, shape) = match &placed.shape {
         Shape::Sphere { radius } => (Vec3::zeros(), SharedShape::ball(*radius)),
@@ -35,8 +33,7 @@ fn fixed_shape(placed: &PlacedShape, base: &Path) -> Result<Placed, PhysicsError
             (n * *offset, SharedShape::halfspace(to_glam(&n)))
         }
         Shape::Mesh(source) => {
-            let mesh =
-                load_mesh(source, base, "mesh").map_err(|error| PhysicsError::Shape(error.to_string()))?;
+            let mesh = source.mesh().map_err(|error| PhysicsError::Shape(error.to_string()))?;
             (Vec3::zeros(), triangles(&mesh)?)
         }
     };

@@ -8,7 +8,6 @@ use crate::surface::ball_surface;
 use crate::{Bounds, Failure, Happening, Outcome, PhysicsError, SimulationSettings, Stage};
 use regrasp_api::{FingerIndex, Pose, Problem, angle_between};
 use regrasp_world::World;
-use std::path::Path;
 
 /// How a motion is replayed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,10 +102,9 @@ impl ReplayReport {
 ///
 /// A regrasp's finger moves freely; the others hold. Between two stages the forces pass over from one grip to the next while
 /// everything rests, so that a finger is unloaded before it lifts and pressed on before it carries: any blend of two balanced grips
-/// is balanced and within the cones. Mesh files are looked for relative to the folder `base`.
+/// is balanced and within the cones. The problem stands alone: its meshes are in it.
 pub fn replay(
     problem: &Problem,
-    base: &Path,
     stages: &[Stage<'_>],
     settings: &ReplaySettings,
 ) -> Result<ReplayReport, PhysicsError> {
@@ -114,10 +112,10 @@ pub fn replay(
     if !problem.hand.fingertip.is_ball() {
         return Err(PhysicsError::PointFingertips);
     }
-    let world = World::new(problem, base).map_err(|error| PhysicsError::Problem(error.to_string()))?;
+    let world = World::new(problem).map_err(|error| PhysicsError::Problem(error.to_string()))?;
     let surface = ball_surface(&world.object.mesh)?;
     let hull = hull(&world.object.mesh)?;
-    let fixed = fixed_shapes(problem, base)?;
+    let fixed = fixed_shapes(problem)?;
     let scene = Scene {
         hand: &*world.hand,
         object: &world.object,

@@ -11,7 +11,6 @@ use regrasp_planner::{Clock, Drivers, Outcome, PlanError, Progress, Request, Sta
 use regrasp_verify::Verdict;
 use regrasp_world::SceneClearance;
 use std::iter;
-use std::path::Path;
 
 /// An interrupt that knows what it was.
 pub trait Stop: Interrupt {
@@ -122,8 +121,6 @@ impl<'a> Setup<'a> {
             &scenario.object,
             &scenario.problem.obstacle,
             limits.tolerances.clearance + limits.resolution.clearance,
-            // The scenario's meshes are given in place: there is no file to look for.
-            Path::new(""),
         )
         .map_err(|error| scenario.refuse(&error))?;
         let poses = poses(scenario, &clearance)?;

@@ -8,7 +8,6 @@ use parry3d_f64::query::details::distance_segment_segment;
 use parry3d_f64::query::{self, PointQuery};
 use parry3d_f64::shape::{Cuboid, Shape as ParryShape};
 use regrasp_api::{Mesh, MeshSource, PlacedShape, Pose, Shape, Vec3};
-use std::path::Path;
 use std::sync::Arc;
 
 /// What is left of a solid when a layer of constant thickness is taken off; in the frame of what it belongs to.
@@ -109,7 +108,7 @@ fn mesh(source: &MeshSource, X: &Pose) -> Result<Core, String> {
     if source.file.is_some() {
         return Err("the mesh is in another file; a plan must stand alone".into());
     }
-    let mesh = regrasp_world::load_mesh(source, Path::new(""), "mesh").map_err(|error| error.to_string())?;
+    let mesh = source.mesh().map_err(|error| error.to_string())?;
     let vertices = mesh.vertices().iter().map(|v| (X * Point3::from(*v)).coords).collect();
     let moved = Mesh::new(vertices, mesh.facets().to_vec()).map_err(|error| error.to_string())?;
     Ok(Core::Mesh(Arc::new(Solid::new(&moved)?)))

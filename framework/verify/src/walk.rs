@@ -11,7 +11,6 @@ use crate::verdict::{Gauge, Verdict};
 use crate::{claims, ends, motion_checks};
 use regrasp_api::{MAX_FINGERS, ObjectModel, ObjectShape, Problem, Tolerances, Vec3};
 use regrasp_plan::{Place, Plan, PlanCertificate};
-use std::path::Path;
 
 /// Verifies a plan. Whatever the plan holds, there is a verdict.
 ///
@@ -67,7 +66,7 @@ pub(crate) fn prepare(problem: &Problem) -> Result<(Chains, ObjectModel), String
     {
         return Err("the object's mesh is in another file; a plan must stand alone".into());
     }
-    let object = regrasp_world::load_object(&problem.object, Path::new("")).map_err(|e| e.to_string())?;
+    let object = regrasp_world::load_object(&problem.object).map_err(|e| e.to_string())?;
     // A plan that grants itself tolerances beyond all reason would pass everything else.
     regrasp_world::check_limits(&problem.limits).map_err(|e| e.to_string())?;
     Ok((hand, object))

@@ -116,7 +116,7 @@ fn corner() -> ObjectShape {
     facets.extend(fan.map(|f| f.map(|v| v + 6)));
     let flipped = facets.iter().map(|&[a, b, c]| [a, c, b]).collect();
     let mesh = |facets| MeshSource { vertices: Vec::clone(&vertices), facets, ..Default::default() };
-    let outward = regrasp_world::load_mesh(&mesh(facets.clone()), std::path::Path::new(""), "").is_ok();
+    let outward = mesh(facets.clone()).mesh().is_ok();
     ObjectShape::Mesh(mesh(if outward { facets } else { flipped }))
 }
 

@@ -3,8 +3,8 @@
 use crate::ViewError;
 use crate::number::nano;
 use regrasp_api::{Mesh, MeshSource};
+use regrasp_world::WorldError;
 use serde::Serialize;
-use std::path::Path;
 
 /// The most facets of one page (some 1.5 MB). Scenes with more are drawn with fewer.
 const MOST_FACETS: usize = 40_000;
@@ -30,7 +30,8 @@ impl MeshData {
 
     pub(crate) fn of_source(source: &MeshSource, key: &str) -> Result<Self, ViewError> {
         // A plan stands alone: its meshes are inside, and no folder is looked into.
-        Ok(Self::new(&regrasp_world::load_mesh(source, Path::new(""), key)?))
+        let mesh = source.mesh().map_err(|error| WorldError::mesh(key, error))?;
+        Ok(Self::new(&mesh))
     }
 
     /// Draws with at most `most` facets, on the finest grid that does it: the vertices of one cell become one (J. Rossignac, P. Borrel,

@@ -5,7 +5,6 @@ use crate::hand::{HandData, ObstacleData, hand, obstacles};
 use crate::mesh::{MeshData, thin};
 use regrasp_api::Problem;
 use serde::Serialize;
-use std::path::Path;
 
 #[derive(Serialize)]
 pub(crate) struct SceneData {
@@ -24,7 +23,7 @@ struct ObjectData {
 }
 
 pub(crate) fn scene(problem: &Problem) -> Result<SceneData, ViewError> {
-    let object = regrasp_world::load_object(&problem.object, Path::new(""))?;
+    let object = regrasp_world::load_object(&problem.object)?;
     let mut scene = SceneData {
         hand: hand(&problem.hand)?,
         object: ObjectData {

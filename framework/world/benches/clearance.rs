@@ -7,7 +7,6 @@ use regrasp_api::{
 };
 use regrasp_world::{ChainHand, SceneClearance, primitive_mesh};
 use std::hint::black_box;
-use std::path::Path;
 use std::sync::Arc;
 
 fn four_finger() -> ChainHand {
@@ -47,8 +46,7 @@ fn objects() -> Vec<(&'static str, ObjectModel)> {
 fn checks(criterion: &mut Criterion) {
     let hand = Arc::new(four_finger());
     for (name, object) in objects() {
-        let scene =
-            SceneClearance::new(hand.clone(), &object, &[], 5e-4, Path::new("")).expect("the scene is sound");
+        let scene = SceneClearance::new(hand.clone(), &object, &[], 5e-4).expect("the scene is sound");
         let mut q = grasp(&hand, &object);
         let contact = regrasp_api::Contact { facet: 0, p_OC: Vec3::zeros(), n_O: Vec3::z() };
         q.contacts = PerFinger::filled(hand.finger_count(), Some(contact));
@@ -77,7 +75,7 @@ fn building(criterion: &mut Criterion) {
     let hand = Arc::new(four_finger());
     for (name, object) in objects() {
         criterion.bench_function(&format!("{name}/build"), |bencher| {
-            bencher.iter(|| SceneClearance::new(hand.clone(), black_box(&object), &[], 5e-4, Path::new("")));
+            bencher.iter(|| SceneClearance::new(hand.clone(), black_box(&object), &[], 5e-4));
         });
     }
     criterion.bench_function("sphere/mesh of 1,280 facets", |bencher| {

@@ -1,8 +1,7 @@
 //! Why a description of a hand, an object or a scene is refused.
 
 use crate::hand::HandError;
-use regrasp_api::MeshError;
-use std::path::PathBuf;
+use regrasp_api::{MeshError, MeshSourceError};
 use thiserror::Error;
 
 /// Why a description is refused: each message names the key or the file, the value and what is allowed.
@@ -30,26 +29,6 @@ pub enum WorldError {
     /// The hand; its keys are below `hand`.
     #[error("in `hand`: {0}")]
     Hand(#[from] HandError),
-    /// A mesh file that cannot be read.
-    #[error("`{key}`: cannot read `{}`: {reason}", path.display())]
-    File {
-        /// The path of the key.
-        key: String,
-        /// The file, as it was looked for.
-        path: PathBuf,
-        /// Why, with the line where there is one.
-        reason: String,
-    },
-    /// A mesh file whose mesh cannot be used.
-    #[error("`{key}`: the mesh of `{}` is refused: {source}", path.display())]
-    FileMesh {
-        /// The path of the key.
-        key: String,
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with the mesh, and the fix.
-        source: MeshError,
-    },
     /// A mesh given in place that cannot be used.
     #[error("`{key}`: the mesh is refused: {source}")]
     Mesh {
@@ -64,6 +43,16 @@ impl WorldError {
     /// A value outside its range.
     pub(crate) fn range(key: impl Into<String>, value: impl ToString, range: impl Into<String>) -> Self {
         Self::Range { key: key.into(), value: value.to_string(), range: range.into() }
+    }
+
+    /// A mesh source, at `key`, that gives no mesh.
+    pub fn mesh(key: &str, error: MeshSourceError) -> Self {
+        match error {
+            MeshSourceError::Mesh(source) => Self::Mesh { key: key.into(), source },
+            MeshSourceError::Scale(value) => Self::range(format!("{key}.scale"), value, "1e-9..=1e9"),
+            MeshSourceError::TooMany(_) => Self::value(format!("{key}.facets"), error.to_string()),
+            other => Self::value(key, other.to_string()),
+        }
     }
 
     /// A value that cannot be used.

@@ -2,10 +2,12 @@
 
 mod hand;
 mod limits;
+mod mesh_source;
 mod object;
 mod problem;
 
 pub use hand::*;
 pub use limits::*;
+pub use mesh_source::*;
 pub use object::*;
 pub use problem::*;

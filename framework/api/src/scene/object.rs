@@ -1,6 +1,6 @@
 //! Shapes, objects and obstacles.
 
-use super::PoseDescription;
+use super::{MeshSource, PoseDescription};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -69,33 +69,6 @@ pub struct ObstacleDescription {
     /// Its pose in the hand's frame.
     #[serde(default)]
     pub pose: PoseDescription,
-}
-
-/// Where a mesh comes from: a file, or the mesh itself (as plan files carry it).
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct MeshSource {
-    /// An STL, OBJ or PLY file, relative to the file that names it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(example = &"part.stl")]
-    pub file: Option<String>,
-    /// What lengths are multiplied with (no unit): 0.001 for a file in millimetres. Default 1.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1e-9, max = 1e9))]
-    #[schemars(example = 0.001)]
-    pub scale: Option<f64>,
-    /// Turns the mesh inside out after reading. Default false.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(example = true)]
-    pub flip: Option<bool>,
-    /// Vertices (m), instead of a file.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schemars(extend("examples" = [[[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.0, 0.02, 0.0], [0.0, 0.0, 0.02]]]))]
-    pub vertices: Vec<[f64; 3]>,
-    /// Facets as counter-clockwise indices of vertices seen from outside, instead of a file.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schemars(extend("examples" = [[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]]))]
-    pub facets: Vec<[u32; 3]>,
 }
 
 /// The shape of the object: a primitive, turned into a closed mesh about the origin, or a mesh.

@@ -15,7 +15,7 @@ pub fn hand() -> ChainHand {
 pub fn object(shape: &str) -> ObjectModel {
     let text = format!("friction = 0.8\nmass = 0.1\nshape = {shape}\n");
     let description: ObjectDescription = toml::from_str(&text).unwrap();
-    load_object(&description, Path::new(".")).unwrap()
+    load_object(&description).unwrap()
 }
 
 pub fn shapes() -> [ObjectModel; 3] {

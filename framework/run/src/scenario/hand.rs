@@ -3,7 +3,9 @@
 use super::document::{Document, key_path};
 use super::{HANDS, HandChoice, Place, ScenarioError, find, read, refused, unknown};
 use regrasp_api::HandDescription;
-use regrasp_world::{ChainHand, UrdfError, UrdfHand, UrdfOptions, UrdfReport, embed_hand, read_urdf};
+use regrasp_formats::{RobotFileError, embed_hand};
+use regrasp_hands::{UrdfHand, UrdfOptions, UrdfReport, read_urdf};
+use regrasp_world::ChainHand;
 use std::path::{Path, PathBuf};
 
 /// A hand that was built and checked.
@@ -80,7 +82,7 @@ fn remarks(path: &Path, report: &UrdfReport) -> Vec<String> {
 }
 
 /// A URDF's fault with its own place; what concerns the file as a whole, with the scenario's key.
-fn urdf_refused(scenario: &Document, error: UrdfError) -> ScenarioError {
+fn urdf_refused(scenario: &Document, error: RobotFileError) -> ScenarioError {
     let file = error.file.display().to_string();
     let Some(line) = error.line else {
         let named = error.message.split('`').nth(1).unwrap_or_default();

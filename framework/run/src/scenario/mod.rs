@@ -14,10 +14,11 @@ pub use file::*;
 pub use library::*;
 
 pub use document::{Document, key_path};
-use regrasp_api::{HandDescription, ObjectModel, Problem, Slot};
+use regrasp_api::{HandDescription, MeshSource, ObjectDescription, ObjectModel, ObjectShape, Problem, Slot};
 use regrasp_api::{Step, near};
+use regrasp_formats::{embed_obstacles, load_mesh};
 use regrasp_host::{Choices, HostError, Registry};
-use regrasp_world::{ChainHand, check_problem, check_units, embed_object, embed_obstacles, load_object};
+use regrasp_world::{ChainHand, check_problem, check_units, load_object, object_of_mesh};
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
@@ -91,9 +92,8 @@ pub fn from_text(
     let mut problem = problem(&content, description);
     check_problem(&problem).map_err(|error| refused(&document, &error))?;
     embed_obstacles(&mut problem.obstacle, folder).map_err(|error| refused(&document, &error))?;
-    let object = load_object(&problem.object, folder).map_err(|error| refused(&document, &error))?;
+    let object = object(&document, &mut problem.object, folder)?;
     check_units(&hand, &object, &content.object.shape).map_err(|error| refused(&document, &error))?;
-    embed_object(&mut problem.object, &object);
     Ok(Scenario {
         name: content.name.clone().unwrap_or_else(|| stem(file)),
         summary: content.summary,
@@ -106,6 +106,20 @@ pub fn from_text(
         remarks,
         document,
     })
+}
+
+/// The object; a mesh's file is looked for in `folder`, and written out in the description.
+fn object(
+    document: &Document,
+    description: &mut ObjectDescription,
+    folder: &Path,
+) -> Result<ObjectModel, ScenarioError> {
+    let ObjectShape::Mesh(source) = &mut description.shape else {
+        return load_object(description).map_err(|error| refused(document, &error));
+    };
+    let mesh = load_mesh(source, folder, "object.shape").map_err(|error| refused(document, &error))?;
+    *source = MeshSource::of(&mesh);
+    object_of_mesh(description, mesh).map_err(|error| refused(document, &error))
 }
 
 fn stem(file: &str) -> String {

@@ -158,7 +158,7 @@ pub fn plan_of(mut problem: Problem, hand: &ChainHand, motion: &Motion) -> Plan 
     problem.goal = [0, 2]
         .map(|segment| GoalDescription { pose: PoseDescription::from(&goal(segment)), grasp: None })
         .to_vec();
-    let object = regrasp_world::load_object(&problem.object, std::path::Path::new("")).unwrap();
+    let object = regrasp_world::load_object(&problem.object).unwrap();
     let transfer_law = TransferLaw::of_fingertips(problem.hand.fingertip);
     let choice = PluginChoice { id: "contact-model/pcwf".into(), settings: serde_json::json!({}) };
     Plan {

@@ -3,10 +3,8 @@
 use super::exact::{MeshSolid, Solid};
 use super::rod::{Bounds, Rod};
 use crate::error::{WorldError, check_range};
-use crate::mesh::load_mesh;
 use nalgebra::Point3;
 use regrasp_api::{PlacedShape, Pose, PoseDescription, Shape, Vec3};
-use std::path::Path;
 use std::sync::Arc;
 
 /// A solid placed in the frame of the body that it belongs to.
@@ -24,15 +22,15 @@ const LENGTHS: (f64, f64) = (1e-6, 1e3);
 
 impl Placed {
     /// Reads a shape at a pose; `key` is the path of both in their description.
-    pub fn read(shape: &Shape, pose: &PoseDescription, base: &Path, key: &str) -> Result<Self, WorldError> {
+    pub fn read(shape: &Shape, pose: &PoseDescription, key: &str) -> Result<Self, WorldError> {
         let X_BS = pose.pose().map_err(|reason| WorldError::value(format!("{key}.pose"), reason))?;
-        let solid = solid(shape, base, &format!("{key}.shape"))?;
+        let solid = solid(shape, &format!("{key}.shape"))?;
         Ok(Self::new(solid, X_BS))
     }
 
-    pub fn read_all(shapes: &[PlacedShape], base: &Path, key: &str) -> Result<Vec<Self>, WorldError> {
+    pub fn read_all(shapes: &[PlacedShape], key: &str) -> Result<Vec<Self>, WorldError> {
         let read = |(i, placed): (usize, &PlacedShape)| {
-            Self::read(&placed.shape, &placed.pose, base, &format!("{key}[{i}]"))
+            Self::read(&placed.shape, &placed.pose, &format!("{key}[{i}]"))
         };
         shapes.iter().enumerate().map(read).collect()
     }
@@ -94,7 +92,7 @@ fn around(bounds: &Bounds) -> Rod {
     Rod::new(center - along, center + along, across.norm())
 }
 
-fn solid(shape: &Shape, base: &Path, key: &str) -> Result<Solid, WorldError> {
+fn solid(shape: &Shape, key: &str) -> Result<Solid, WorldError> {
     let length = |name: &str, value: f64| {
         check_range(&format!("{key}.{name}"), value, LENGTHS.0, LENGTHS.1, " m").map(|()| value)
     };
@@ -126,6 +124,9 @@ fn solid(shape: &Shape, base: &Path, key: &str) -> Result<Solid, WorldError> {
             check_range(&format!("{key}.offset"), *offset, -LENGTHS.1, LENGTHS.1, " m")?;
             Ok(Solid::HalfSpace { normal: direction.normalize(), offset: *offset })
         }
-        Shape::Mesh(source) => Ok(Solid::Mesh(Arc::new(MeshSolid::new(&load_mesh(source, base, key)?)))),
+        Shape::Mesh(source) => {
+            let mesh = source.mesh().map_err(|error| WorldError::mesh(key, error))?;
+            Ok(Solid::Mesh(Arc::new(MeshSolid::new(&mesh))))
+        }
     }
 }

@@ -12,7 +12,6 @@ use crate::error::WorldError;
 use crate::hand::{ChainHand, LinkFrame};
 use regrasp_api::{Body, BodyPair, FingerIndex, FingerJoints, Hand, Pose, TipRule};
 use smallvec::SmallVec;
-use std::path::Path;
 use std::sync::Arc;
 
 /// One solid of a finger.
@@ -47,12 +46,12 @@ pub(crate) struct PlacedFinger {
 }
 
 impl FingerBodies {
-    pub fn new(hand: &Arc<ChainHand>, finger: FingerIndex, base: &Path) -> Result<Self, WorldError> {
+    pub fn new(hand: &Arc<ChainHand>, finger: FingerIndex) -> Result<Self, WorldError> {
         let mut parts = Vec::new();
         let last = hand.link_count(finger) - 1;
         for link in 0..=last {
             let key = format!("hand.finger[{}].joint[{link}].link", finger.index());
-            for placed in Placed::read_all(hand.link_shapes(finger, link), base, &key)? {
+            for placed in Placed::read_all(hand.link_shapes(finger, link), &key)? {
                 if matches!(placed.solid, Solid::HalfSpace { .. }) {
                     return Err(WorldError::value(key, "a half-space cannot be part of a link; use a box"));
                 }

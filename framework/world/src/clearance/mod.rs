@@ -28,7 +28,6 @@ use regrasp_api::{
     ObjectModel, ObstacleDescription, PairDistance, Pose, TipRule,
 };
 use smallvec::SmallVec;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Rounding (m) that a bound must exceed to count.
@@ -46,23 +45,21 @@ pub struct SceneClearance {
 }
 
 impl SceneClearance {
-    /// Prepares the bodies; `clearance` (m) is what the `*_free` calls keep between them. Meshes are looked for relative to
-    /// the folder `base`.
+    /// Prepares the bodies; `clearance` (m) is what the `*_free` calls keep between them. Meshes are given in place.
     pub fn new(
         hand: Arc<ChainHand>,
         object: &ObjectModel,
         obstacles: &[ObstacleDescription],
         clearance: f64,
-        base: &Path,
     ) -> Result<Self, WorldError> {
         let mut fingers = (0..hand.finger_count() as u8)
-            .map(|finger| FingerBodies::new(&hand, FingerIndex(finger), base))
+            .map(|finger| FingerBodies::new(&hand, FingerIndex(finger)))
             .collect::<Result<Vec<_>, _>>()?;
         let wide = fingers.iter().map(FingerBodies::thickest).fold(0.0, f64::max) + clearance;
-        let palm = Placed::read_all(hand.palm_shapes(), base, "hand.palm")?;
+        let palm = Placed::read_all(hand.palm_shapes(), "hand.palm")?;
         let mut fixed: Vec<_> = palm.into_iter().map(|placed| Fixed::new(Body::Palm, placed, wide)).collect();
         for (i, obstacle) in obstacles.iter().enumerate() {
-            let placed = Placed::read(&obstacle.shape, &obstacle.pose, base, &format!("obstacle[{i}]"))?;
+            let placed = Placed::read(&obstacle.shape, &obstacle.pose, &format!("obstacle[{i}]"))?;
             fixed.push(Fixed::new(Body::Obstacle(i as u16), placed, wide));
         }
         let clear = clearance + ROUNDING;

@@ -89,7 +89,7 @@ fn scene(
     obstacles: &[ObstacleDescription],
 ) -> (Arc<ChainHand>, SceneClearance) {
     let hand = Arc::new(ChainHand::new(hand).unwrap());
-    let scene = SceneClearance::new(hand.clone(), object, obstacles, CLEARANCE, Path::new("")).unwrap();
+    let scene = SceneClearance::new(hand.clone(), object, obstacles, CLEARANCE).unwrap();
     (hand, scene)
 }
 

@@ -42,12 +42,10 @@ mod error;
 mod inverse;
 mod reach;
 mod screw;
-mod urdf;
 mod workspace;
 
 pub use chain::{LinkFrame, LinkFrames};
 pub use error::HandError;
-pub use urdf::{UrdfError, UrdfHand, UrdfOptions, UrdfReport, read_urdf};
 pub use workspace::{FingerWorkspace, ObjectPlace, finger_workspace, object_place};
 
 use chain::FingerChain;

@@ -3,23 +3,24 @@
 mod pattern;
 
 use crate::error::{WorldError, check_range};
-use crate::mesh::{MAX_FACETS, load_mesh};
-use regrasp_api::{Mesh, MeshError, ObjectDescription, ObjectModel, ObjectShape, Primitive, Vec3};
-use std::path::Path;
+use regrasp_api::{
+    MAX_FACETS, Mesh, MeshError, ObjectDescription, ObjectModel, ObjectShape, Primitive, Vec3,
+};
 
 /// Lengths of a primitive (m): beyond these, somebody has mistaken the unit by far.
 const LENGTHS: (f64, f64) = (1e-6, 1e3);
 /// The longest length of a primitive over its shortest.
 const MAX_PROPORTION: f64 = 10_000.0;
 
-/// The object of `description`; files are looked for relative to the folder `base`.
+/// The object of `description`, a mesh being given in place.
 ///
 /// Errors name keys below `object`.
-pub fn load_object(description: &ObjectDescription, base: &Path) -> Result<ObjectModel, WorldError> {
-    check_range("object.mass", description.mass, 1e-6, 1e3, " kg")?;
-    check_range("object.friction", description.friction, 0.0, 10.0, "")?;
+pub fn load_object(description: &ObjectDescription) -> Result<ObjectModel, WorldError> {
+    check_body(description)?;
     let (mesh, primitive) = match &description.shape {
-        ObjectShape::Mesh(source) => (load_mesh(source, base, "object.shape")?, None),
+        ObjectShape::Mesh(source) => {
+            (source.mesh().map_err(|error| WorldError::mesh("object.shape", error))?, None)
+        }
         shape => {
             let (primitive, facets) = primitive(shape)?;
             let refused = |source| WorldError::Mesh { key: "object.shape".into(), source };
@@ -27,6 +28,17 @@ pub fn load_object(description: &ObjectDescription, base: &Path) -> Result<Objec
         }
     };
     Ok(ObjectModel::new(mesh, primitive, description.mass, description.friction))
+}
+
+/// The object of `description` whose mesh was read from the file that it names.
+pub fn object_of_mesh(description: &ObjectDescription, mesh: Mesh) -> Result<ObjectModel, WorldError> {
+    check_body(description)?;
+    Ok(ObjectModel::new(mesh, None, description.mass, description.friction))
+}
+
+fn check_body(description: &ObjectDescription) -> Result<(), WorldError> {
+    check_range("object.mass", description.mass, 1e-6, 1e3, " kg")?;
+    check_range("object.friction", description.friction, 0.0, 10.0, "")
 }
 
 /// A closed, outward mesh of `primitive` with about `facets` facets (12 for a cuboid), its vertices on the true surface.

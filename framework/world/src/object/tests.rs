@@ -99,7 +99,7 @@ fn mass_properties_approach_the_closed_forms_from_inside() {
 #[test]
 fn an_object_has_the_mass_it_was_given() {
     let description = describe(ObjectShape::Cuboid { size: [0.02, 0.04, 0.06] });
-    let object = load_object(&description, Path::new("")).unwrap();
+    let object = load_object(&description).unwrap();
     assert_eq!((object.mass, object.friction), (0.3, 0.8));
     let expected = 0.3 / 12.0 * Vec3::new(0.0052, 0.0040, 0.0020);
     assert!((object.inertia_OCm - Mat3::from_diagonal(&expected)).norm() < 1e-15);
@@ -131,7 +131,7 @@ fn bad_numbers_are_refused_with_key_value_and_range() {
         (flat, ["object.shape.size[1]", "0"]),
         (needle, ["object.shape", "10000"]),
     ] {
-        let message = load_object(&description, Path::new("")).unwrap_err().to_string();
+        let message = load_object(&description).unwrap_err().to_string();
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
 }
@@ -144,14 +144,14 @@ fn a_mesh_in_place_is_an_object_too_and_its_faults_are_named() {
         facets: mesh.facets().to_vec(),
         ..Default::default()
     };
-    let object = load_object(&describe(ObjectShape::Mesh(source.clone())), Path::new("")).unwrap();
+    let object = load_object(&describe(ObjectShape::Mesh(source.clone()))).unwrap();
     assert_eq!((object.mesh, object.primitive), (mesh, None));
     let mut open = source.clone();
     open.facets.pop();
-    let error = load_object(&describe(ObjectShape::Mesh(open)), Path::new("")).unwrap_err();
+    let error = load_object(&describe(ObjectShape::Mesh(open))).unwrap_err();
     assert!(matches!(error, WorldError::Mesh { source: MeshError::Open { count: 3, .. }, .. }), "{error}");
     let mut both = source;
     both.file = Some("x.stl".into());
-    let error = load_object(&describe(ObjectShape::Mesh(both)), Path::new("")).unwrap_err();
+    let error = load_object(&describe(ObjectShape::Mesh(both))).unwrap_err();
     assert!(error.to_string().contains("either `file`"));
 }

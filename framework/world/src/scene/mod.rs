@@ -1,17 +1,14 @@
 //! A whole problem, checked and prepared: hand, object, clearance, start and goals.
 
 mod check;
-mod embed;
 
 pub use check::{check_limits, check_problem, check_units};
-pub use embed::{embed_hand, embed_object, embed_obstacles};
 
 use crate::clearance::SceneClearance;
 use crate::error::WorldError;
 use crate::hand::ChainHand;
 use crate::object::load_object;
 use regrasp_api::{ObjectModel, Pose, Problem, Vec3};
-use std::path::Path;
 use std::sync::Arc;
 
 /// Everything that a problem describes, checked and prepared for planning.
@@ -35,19 +32,19 @@ pub struct World {
 }
 
 impl World {
-    /// Checks a problem and prepares it; mesh files are looked for relative to the folder `base`.
+    /// Checks a problem and prepares it; its meshes are given in place.
     ///
     /// Only what can be told without planning is checked: whether a given grasp holds, or a start collides, is not.
-    pub fn new(problem: &Problem, base: &Path) -> Result<Self, WorldError> {
+    pub fn new(problem: &Problem) -> Result<Self, WorldError> {
         check_problem(problem)?;
         let hand = Arc::new(ChainHand::new(problem.hand.clone())?);
-        let object = load_object(&problem.object, base)?;
+        let object = load_object(&problem.object)?;
         check_units(&hand, &object, &problem.object.shape)?;
         let mut poses = check::poses(problem)?;
         let workspace = problem.sampling_box(&poses);
         let start = poses.remove(0);
         let clear = problem.limits.tolerances.clearance + problem.limits.resolution.clearance;
-        let clearance = SceneClearance::new(hand.clone(), &object, &problem.obstacle, clear, base)?;
+        let clearance = SceneClearance::new(hand.clone(), &object, &problem.obstacle, clear)?;
         let obstacle_names = check::obstacle_names(&problem.obstacle)?;
         let g_H = problem.gravity.into();
         Ok(Self { hand, object, clearance, obstacle_names, start, goals: poses, g_H, workspace })

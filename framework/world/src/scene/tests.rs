@@ -1,8 +1,8 @@
 use super::*;
 use regrasp_api::{
     Clearance, Configuration, FingerGrasp, FingerSet, GoalDescription, Hand, HandDescription, MeshSource,
-    ObjectDescription, ObjectShape, ObstacleDescription, PerFinger, PlacedShape, PoseDescription, Shape,
-    StartDescription, Workspace,
+    ObjectDescription, ObjectShape, ObstacleDescription, PerFinger, PoseDescription, Shape, StartDescription,
+    Workspace,
 };
 
 fn four_finger() -> HandDescription {
@@ -35,7 +35,7 @@ fn obstacle(name: &str) -> ObstacleDescription {
 
 #[test]
 fn a_sound_problem_becomes_a_world() {
-    let world = World::new(&problem(), Path::new("")).unwrap();
+    let world = World::new(&problem()).unwrap();
     assert_eq!(world.obstacle_names, ["obstacle 1", "bar"]);
     assert_eq!((world.hand.finger_count(), world.object.mesh.facets().len()), (4, 1280));
     assert_eq!(world.start.translation.vector.z, 0.085);
@@ -54,7 +54,7 @@ fn a_sound_problem_becomes_a_world() {
 fn refusal(change: impl FnOnce(&mut Problem)) -> String {
     let mut changed = problem();
     change(&mut changed);
-    World::new(&changed, Path::new("")).err().expect("the problem is refused").to_string()
+    World::new(&changed).err().expect("the problem is refused").to_string()
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn every_fault_is_refused_by_its_key() {
         ),
         (refusal(|p| p.obstacle[0].shape = half_space([0.0; 3])), "`obstacle[0].shape.normal`"),
         (refusal(|p| p.obstacle[0].shape = mesh("none.stl")), "none.stl"),
-        (refusal(|p| p.hand.palm[0].shape = mesh("none.stl")), "`hand.palm[0].shape.file`"),
+        (refusal(|p| p.hand.palm[0].shape = mesh("none.stl")), "`hand.palm[0].shape`"),
         (refusal(|p| p.hand.finger[1].joint[2].link[0].shape = half_space([0.0, 0.0, 1.0])), "half-space"),
         (refusal(|p| p.hand.finger[0].joint[0].upper = f64::INFINITY), "in `hand`"),
         (refusal(|p| p.object.mass = 0.0), "`object.mass` = 0"),
@@ -110,37 +110,4 @@ fn ball(radius: f64) -> ObjectShape {
 
 fn mesh(file: &str) -> Shape {
     Shape::Mesh(MeshSource { file: Some(file.into()), ..Default::default() })
-}
-
-#[test]
-fn a_mesh_in_millimetres_is_refused_with_the_scale_to_use_and_stands_alone_when_embedded() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut text = String::new();
-    let cube =
-        crate::primitive_mesh(&regrasp_api::Primitive::Cuboid { half_size: Vec3::repeat(22.5) }, 12).unwrap();
-    cube.vertices().iter().for_each(|v| text.push_str(&format!("v {} {} {}\n", v.x, v.y, v.z)));
-    cube.facets().iter().for_each(|[a, b, c]| text.push_str(&format!("f {} {} {}\n", a + 1, b + 1, c + 1)));
-    std::fs::write(folder.path().join("cube.obj"), text).unwrap();
-    let mut problem = problem();
-    problem.object.shape =
-        ObjectShape::Mesh(MeshSource { file: Some("cube.obj".into()), ..Default::default() });
-    let message = World::new(&problem, folder.path()).err().unwrap().to_string();
-    assert!(message.contains("`scale = 0.001`"), "{message}");
-    let scaled = MeshSource { file: Some("cube.obj".into()), scale: Some(0.001), ..Default::default() };
-    problem.object.shape = ObjectShape::Mesh(scaled.clone());
-    problem.obstacle[0].shape = Shape::Mesh(scaled.clone());
-    problem.hand.palm.push(PlacedShape { shape: Shape::Mesh(scaled.clone()), pose: pose([0.0, 0.0, -0.1]) });
-    problem.hand.finger[0].joint[1].link[0].shape = Shape::Mesh(MeshSource { scale: Some(0.0002), ..scaled });
-    let mut alone = problem.clone();
-    embed_object(&mut alone.object, &load_object(&problem.object, folder.path()).unwrap());
-    embed_obstacles(&mut alone.obstacle, folder.path()).unwrap();
-    embed_hand(&mut alone.hand, folder.path()).unwrap();
-    let nowhere = Path::new("/nowhere");
-    let (from_files, from_plan) =
-        (World::new(&problem, folder.path()).unwrap(), World::new(&alone, nowhere).unwrap());
-    assert_eq!(from_files.object.mesh, from_plan.object.mesh);
-    let mut again = alone.clone();
-    embed_hand(&mut again.hand, nowhere).unwrap();
-    embed_obstacles(&mut again.obstacle, nowhere).unwrap();
-    assert_eq!(again, alone);
 }

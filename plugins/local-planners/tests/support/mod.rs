@@ -72,9 +72,7 @@ impl Bench {
     pub fn among(hand: HandDescription, object: ObjectModel, obstacles: &[ObstacleDescription]) -> Self {
         let hand = Arc::new(ChainHand::new(hand).unwrap());
         let resolution = Resolution::default();
-        let clearance =
-            SceneClearance::new(hand.clone(), &object, obstacles, resolution.clearance, FilePath::new("."))
-                .unwrap();
+        let clearance = SceneClearance::new(hand.clone(), &object, obstacles, resolution.clearance).unwrap();
         let surface =
             Geodesic::new(&GeodesicSettings::default(), &object.mesh, hand.fingertip_radius()).unwrap();
         Self {
@@ -154,7 +152,7 @@ pub fn free_tips() -> HandDescription {
 pub fn object(shape: &str) -> ObjectModel {
     let description: ObjectDescription =
         toml::from_str(&format!("friction = 0.8\nshape = {shape}\n")).unwrap();
-    regrasp_world::load_object(&description, FilePath::new(".")).unwrap()
+    regrasp_world::load_object(&description).unwrap()
 }
 
 pub fn sphere() -> ObjectModel {

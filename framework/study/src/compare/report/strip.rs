@@ -4,7 +4,6 @@ use regrasp_api::Configuration;
 use regrasp_plan::{Plan, configuration};
 use regrasp_view::picture::{Bounds, Picture, Scene};
 use regrasp_world::{ChainHand, load_object};
-use std::path::Path;
 
 /// How many moments are shown.
 const FRAMES: usize = 4;
@@ -15,7 +14,7 @@ const ROOM: f64 = 6.0;
 pub fn strip(plan: &Plan) -> Option<String> {
     let problem = &plan.scenario.problem;
     let hand = ChainHand::new(problem.hand.clone()).ok()?;
-    let object = load_object(&problem.object, Path::new("")).ok()?;
+    let object = load_object(&problem.object).ok()?;
     let scene = Scene { hand: &hand, mesh: &object.mesh, obstacles: &problem.obstacle };
     let states: Vec<_> = plan.segments.iter().flat_map(|segment| &segment.states).collect();
     let last = states.len().checked_sub(1)?;

@@ -1,16 +1,15 @@
 //! The ball that stands for a fingertip: where its centre lies, and what of the link it replaces.
 
-use super::document::{Geometry, Link};
-use super::error::Fault;
-use super::fingers::{Chain, Fingers};
-use super::hull;
-use super::solids::{Piece, Shaper};
-use super::tree::Tree;
+use crate::fingers::{Chain, Fingers};
+use crate::solids::{Piece, Shaper, around};
+use crate::tree::Tree;
 use regrasp_api::{Pose, Shape, Vec3, any_orthogonal};
+use regrasp_formats::RobotFault as Fault;
+use regrasp_formats::{Geometry, Link};
 use std::f64::consts::{PI, TAU};
 
 /// The clearance (m) that planning keeps by default: a link that is thinner than the ball by less touches the object beside the ball.
-pub(super) const CLEARANCE: f64 = 5e-4;
+pub(crate) const CLEARANCE: f64 = 5e-4;
 /// A ball that can touch flat faces up to this angle (rad) from the finger's direction, however they are turned, is free enough.
 const FREE: f64 = 75.0 * PI / 180.0;
 /// Directions about the finger that are looked at.
@@ -18,7 +17,7 @@ const TURNS: usize = 24;
 
 /// The ball's centre in the last link's frame L (m), the direction in which the finger ends, and how both were found.
 #[derive(Clone, Debug)]
-pub(super) struct Tip {
+pub(crate) struct Tip {
     pub center: Vec3,
     pub outward: Vec3,
     pub how: String,
@@ -40,7 +39,7 @@ fn own_radius(link: &Link) -> Option<f64> {
 }
 
 /// The radius (m) of the tip links' own balls, all equal; else a fault that suggests one.
-pub(super) fn common_radius(tree: &Tree<'_>, fingers: &Fingers, shaper: &mut Shaper) -> Result<f64, Fault> {
+pub(crate) fn common_radius(tree: &Tree<'_>, fingers: &Fingers, shaper: &mut Shaper) -> Result<f64, Fault> {
     let tips = || fingers.chains.iter().map(|chain| tree.link_of(chain.tip));
     let radii: Vec<Option<f64>> = tips().map(own_radius).collect();
     let first = radii[0].filter(|first| (1e-4..=0.2).contains(first));
@@ -59,7 +58,7 @@ pub(super) fn common_radius(tree: &Tree<'_>, fingers: &Fingers, shaper: &mut Sha
     };
     let half = |pieces: Vec<Piece>| {
         let corners: Vec<Vec3> = pieces.iter().flat_map(Piece::spread).collect();
-        let (low, high) = hull::around(&corners);
+        let (low, high) = around(&corners);
         ((high - low) / 2.0).min()
     };
     let thin = fingers.chains.iter().filter_map(shape).map(half).fold(f64::INFINITY, f64::min);
@@ -186,7 +185,7 @@ fn middle(pieces: &[Piece]) -> Vec3 {
     if corners.is_empty() {
         return Vec3::zeros();
     }
-    let (low, high) = hull::around(&corners);
+    let (low, high) = around(&corners);
     (low + high) / 2.0
 }
 
@@ -200,7 +199,7 @@ fn fit(own: &[Piece], radius: f64) -> (Vec3, Vec3) {
     if near.is_empty() {
         near.push(middle(own));
     }
-    let (low, high) = hull::around(&near);
+    let (low, high) = around(&near);
     let aside = (low + high) / 2.0;
     (aside + outward * (end - radius - outward.dot(&aside)), outward)
 }
@@ -213,7 +212,7 @@ fn inside(own: &[Piece], center: &Vec3, radius: f64) -> bool {
 }
 
 /// The part of a piece with n · x ≤ height; `None` where nothing is left.
-pub(super) fn below(piece: Piece, n: &Vec3, height: f64) -> Option<Piece> {
+pub(crate) fn below(piece: Piece, n: &Vec3, height: f64) -> Option<Piece> {
     if piece.reach(n) <= height + 1e-9 {
         return Some(piece);
     }
@@ -228,7 +227,7 @@ pub(super) fn below(piece: Piece, n: &Vec3, height: f64) -> Option<Piece> {
                 piece.corners.iter().copied().filter(|p| n.dot(p) <= height).collect();
             // Every edge is among the lines between corners; the others cross the plane inside the cut.
             points.extend(pairs.filter_map(|(a, b)| crossing(a, b, n, height)));
-            hull::hull(&points).map(|mesh| Piece::of_mesh(&mesh))
+            regrasp_world::convex_hull(&points).map(|mesh| Piece::of_mesh(&mesh))
         }
     }
 }

@@ -3,89 +3,10 @@
 //! Format: "XML Robot Description Format (URDF)", ROS wiki, elements `robot`, `link`, `joint`. Numbers that are missing stay missing: what may be
 //! left out, and what then holds, is decided by those who use them.
 
-use super::error::Fault;
+use crate::error::RobotFault as Fault;
+use crate::robot::{Geometry, Joint, Kind, Limit, Link, Mimic, Robot, Solid};
 use regrasp_api::{Pose, Rotation, Vec3};
 use roxmltree::{Document, Node};
-
-/// A robot as its file has it.
-#[derive(Debug)]
-pub(super) struct Model {
-    pub name: String,
-    pub links: Vec<Link>,
-    pub joints: Vec<Joint>,
-    /// Names of elements that say nothing about a hand's geometry, such as `transmission`.
-    pub skipped: Vec<String>,
-}
-
-#[derive(Debug)]
-pub(super) struct Link {
-    pub name: String,
-    pub line: usize,
-    /// What is wrong with the shapes of a link matters only where they are used.
-    pub collision: Result<Vec<Solid>, Fault>,
-    pub visual: Result<Vec<Solid>, Fault>,
-}
-
-/// A geometry with its pose in the link's frame.
-#[derive(Clone, Debug)]
-pub(super) struct Solid {
-    pub line: usize,
-    pub X_LS: Pose,
-    pub geometry: Geometry,
-}
-
-/// Lengths in metres.
-#[derive(Clone, Debug)]
-pub(super) enum Geometry {
-    Box { size: [f64; 3] },
-    Sphere { radius: f64 },
-    Cylinder { radius: f64, length: f64 },
-    Capsule { radius: f64, length: f64 },
-    Mesh { file: String, scale: [f64; 3] },
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    Fixed,
-    Revolute,
-    Continuous,
-    Prismatic,
-    /// `floating`, `planar` or `spherical`.
-    Other,
-}
-
-#[derive(Debug)]
-pub(super) struct Joint {
-    pub name: String,
-    pub line: usize,
-    pub kind: Kind,
-    pub parent: String,
-    pub child: String,
-    /// The joint's frame at position 0, in the parent link's frame.
-    pub X_PJ: Pose,
-    pub axis: Vec3,
-    pub limit: Option<Limit>,
-    pub mimic: Option<Mimic>,
-}
-
-/// What `<limit>` says; `None` for an attribute that it lacks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Limit {
-    pub line: usize,
-    pub lower: Option<f64>,
-    pub upper: Option<f64>,
-    pub velocity: Option<f64>,
-    pub effort: Option<f64>,
-    pub acceleration: Option<f64>,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Mimic {
-    pub line: usize,
-    pub joint: String,
-    pub multiplier: f64,
-    pub offset: f64,
-}
 
 /// What to do with a file of macros.
 const EXPAND: &str = "a xacro file must be expanded first, as by `xacro hand.urdf.xacro > hand.urdf`";
@@ -93,7 +14,7 @@ const EXPAND: &str = "a xacro file must be expanded first, as by `xacro hand.urd
 type Element<'a> = Node<'a, 'a>;
 
 /// Reads the text of a URDF.
-pub(super) fn parse(text: &str) -> Result<Model, Fault> {
+pub fn parse_urdf(text: &str) -> Result<Robot, Fault> {
     let document = Document::parse(text).map_err(|error| {
         let message = format!("not well-formed XML: {error}; {EXPAND}");
         Fault::at(error.pos().row as usize, message)
@@ -107,7 +28,7 @@ pub(super) fn parse(text: &str) -> Result<Model, Fault> {
         ));
     }
     let name = root.attribute("name").unwrap_or("hand").to_owned();
-    let mut model = Model { name, links: Vec::new(), joints: Vec::new(), skipped: Vec::new() };
+    let mut model = Robot { name, links: Vec::new(), joints: Vec::new(), skipped: Vec::new() };
     for element in root.children().filter(Node::is_element) {
         if element.tag_name().namespace().is_some_and(|space| space.contains("xacro")) {
             return Err(Fault::at(line(&element), format!("a xacro macro is left in the file: {EXPAND}")));

@@ -1,15 +1,15 @@
 //! Capsules that were written as a cylinder with a ball at each end, as formats without capsules must.
 
-use super::document::{Geometry, Solid};
 use nalgebra::Point3;
 use regrasp_api::Vec3;
+use regrasp_formats::{Geometry, Solid};
 use std::borrow::Cow;
 
 /// How far (m) ball and cylinder may be off.
 const CLOSE: f64 = 1e-6;
 
 /// The shapes, each cylinder with its two balls as one capsule: quicker to keep clear of than a prism, and rounder.
-pub(super) fn joined(solids: &[Solid]) -> Vec<Cow<'_, Solid>> {
+pub(crate) fn joined(solids: &[Solid]) -> Vec<Cow<'_, Solid>> {
     let mut taken = vec![false; solids.len()];
     let mut capsules = Vec::new();
     for (i, solid) in solids.iter().enumerate() {

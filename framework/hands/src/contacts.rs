@@ -1,14 +1,12 @@
 //! Which bodies of the hand always touch each other, and a posture in which the others do not: found by sampling.
 
-use crate::clearance::SceneClearance;
-use crate::hand::{ChainHand, HandError};
-use crate::{WorldError, primitive_mesh};
 use regrasp_api::{
     BodyPair, Clearance, Configuration, FingerIndex, FingerJoints, Hand, HandDescription, ObjectModel,
     PerFinger, Pose, Primitive, Random,
 };
+use regrasp_formats::RobotFault as Fault;
+use regrasp_world::{ChainHand, HandError, SceneClearance, WorldError, primitive_mesh};
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Random postures that are looked at.
@@ -22,7 +20,7 @@ const OFTEN: f64 = 0.8;
 
 /// What was found.
 #[derive(Debug, Default)]
-pub(super) struct Contacts {
+pub(crate) struct Contacts {
     pub touching: Vec<[String; 2]>,
     /// Pairs that touch in most postures, with their share of them.
     pub often: Vec<([String; 2], f64)>,
@@ -32,7 +30,7 @@ pub(super) struct Contacts {
 
 /// Completes a description whose resting posture is its zero posture: pairs that always touch are excluded, and the fingers rest where
 /// nothing touches, if such a posture is found.
-pub(super) fn complete(hand: &mut HandDescription) -> Result<Contacts, WorldError> {
+pub(crate) fn complete(hand: &mut HandDescription) -> Result<Contacts, WorldError> {
     let mut contacts = Contacts::default();
     let scene = Scene::new(hand)?;
     let mut random = Random::from_key(0, 2, 0, 0);
@@ -76,7 +74,7 @@ impl Scene {
         let mesh = primitive_mesh(&Primitive::Cuboid { half_size: regrasp_api::Vec3::repeat(1e-3) }, 12)
             .expect("a cube is a mesh");
         let object = ObjectModel::new(mesh, None, 1.0, 1.0);
-        let clearance = SceneClearance::new(hand.clone(), &object, &[], TOUCHING, Path::new(""))?;
+        let clearance = SceneClearance::new(hand.clone(), &object, &[], TOUCHING)?;
         Ok(Self { hand, clearance })
     }
 
@@ -126,8 +124,14 @@ impl Scene {
     }
 }
 
-impl From<HandError> for super::Fault {
-    fn from(error: HandError) -> Self {
-        Self::of_file(format!("the hand that the file describes is refused: {error}"))
+/// The refusal of the hand that a file describes.
+pub(crate) fn refused(error: WorldError) -> Fault {
+    match error {
+        WorldError::Hand(error) => of_hand(&error),
+        other => Fault::of_file(other.to_string()),
     }
+}
+
+fn of_hand(error: &HandError) -> Fault {
+    Fault::of_file(format!("the hand that the file describes is refused: {error}"))
 }

@@ -1,7 +1,7 @@
 //! The tree of links: one root, no loops, and the ways through it.
 
-use super::document::{Joint, Link, Model};
-use super::error::Fault;
+use regrasp_formats::RobotFault as Fault;
+use regrasp_formats::{Joint, Link, Robot};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The most links of a file.
@@ -9,8 +9,8 @@ const MOST_LINKS: usize = 1000;
 
 /// A model whose links form one tree.
 #[derive(Debug)]
-pub(super) struct Tree<'m> {
-    pub model: &'m Model,
+pub(crate) struct Tree<'m> {
+    pub model: &'m Robot,
     links: BTreeMap<&'m str, usize>,
     joints: BTreeMap<&'m str, usize>,
     /// For each link the joint above it; none for the root.
@@ -23,7 +23,7 @@ pub(super) struct Tree<'m> {
 
 impl<'m> Tree<'m> {
     /// The tree of a model; refused are names given twice, unknown links, two roots and loops.
-    pub fn new(model: &'m Model) -> Result<Self, Fault> {
+    pub fn new(model: &'m Robot) -> Result<Self, Fault> {
         let links = index(model.links.iter().map(|link| (link.name.as_str(), link.line)), "link")?;
         let joints = index(model.joints.iter().map(|joint| (joint.name.as_str(), joint.line)), "joint")?;
         if model.links.is_empty() {

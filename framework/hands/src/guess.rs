@@ -1,12 +1,12 @@
 //! Which links are probably the fingertips and the palm, where nobody says.
 
-use super::error::Fault;
-use super::fingers::{FEWEST_JOINTS, Fingers, common, independent, moves};
-use super::tree::Tree;
+use crate::fingers::{FEWEST_JOINTS, Fingers, common, independent, moves};
+use crate::tree::Tree;
 use regrasp_api::Pose;
+use regrasp_formats::RobotFault as Fault;
 
 /// The hand whose fingers end where the file's links end; below `palm`, if it is given. What has too few joints is left out.
-pub(super) fn hand(tree: &Tree<'_>, palm: Option<usize>) -> Result<Fingers, Fault> {
+pub(crate) fn hand(tree: &Tree<'_>, palm: Option<usize>) -> Result<Fingers, Fault> {
     let all = ends(tree, palm);
     if all.is_empty() {
         return Err(Fault::of_file(match palm {
@@ -42,7 +42,7 @@ pub(super) fn hand(tree: &Tree<'_>, palm: Option<usize>) -> Result<Fingers, Faul
 }
 
 /// Of a file of more than a hand, the hand, if there is one; a fault that names them, if there are more; `None` where there is none.
-pub(super) fn only_hand(tree: &Tree<'_>) -> Option<Result<Fingers, Fault>> {
+pub(crate) fn only_hand(tree: &Tree<'_>) -> Option<Result<Fingers, Fault>> {
     let mut hands: Vec<Fingers> = Vec::new();
     for palm in (0..tree.model.links.len()).filter(|&link| tree.below(link).len() > 1) {
         let Ok(found) = hand(tree, Some(palm)) else { continue };

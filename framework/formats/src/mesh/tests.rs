@@ -1,6 +1,6 @@
 use super::*;
-use crate::object::primitive_mesh;
 use regrasp_api::{MeshError, Primitive};
+use regrasp_world::primitive_mesh;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -101,7 +101,7 @@ impl Folder {
         Self(folder)
     }
 
-    fn load(&self, source: MeshSource) -> Result<Mesh, WorldError> {
+    fn load(&self, source: MeshSource) -> Result<Mesh, FormatError> {
         load_mesh(&source, self.0.path(), "object.shape")
     }
 }
@@ -149,9 +149,9 @@ fn scale_and_flip_are_applied_and_embedding_keeps_the_mesh() {
     let read = folder.load(source.clone()).unwrap();
     assert!((read.radius() - mesh.radius()).abs() < 1e-8);
     let load = |source: &MeshSource, base| load_mesh(source, base, "object.shape").unwrap();
-    let alone = in_memory(&load(&source, folder.0.path()));
+    let alone = MeshSource::of(&load(&source, folder.0.path()));
     assert_eq!(load_mesh(&alone, Path::new("/nowhere"), "object.shape").unwrap(), read);
-    assert_eq!(in_memory(&load(&alone, Path::new("/nowhere"))), alone);
+    assert_eq!(MeshSource::of(&load(&alone, Path::new("/nowhere"))), alone);
     let inside_out = folder.load(MeshSource { flip: Some(true), ..source }).unwrap_err();
     assert!(inside_out.to_string().contains("`flip = true`"), "{inside_out}");
     let scale = folder.load(MeshSource { scale: Some(-1.0), ..file("ring.stl") }).unwrap_err().to_string();
@@ -188,7 +188,7 @@ fn missing_and_unknown_files_are_refused_by_name() {
     let nothing = folder.load(MeshSource::default()).unwrap_err().to_string();
     assert!(nothing.contains("either `file`"), "{nothing}");
     std::fs::create_dir(folder.0.path().join("folder.stl")).unwrap();
-    assert!(matches!(folder.load(file("folder.stl")), Err(WorldError::File { .. })));
+    assert!(matches!(folder.load(file("folder.stl")), Err(FormatError::File { .. })));
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn damaged_meshes_are_refused_with_file_and_fix() {
     let (facets, vertices) = (cube().facets().to_vec(), cube().vertices().to_vec());
     let load = |text: String| Folder::with("x.obj", text).load(file("x.obj")).unwrap_err();
     let fault = |text| match load(text) {
-        WorldError::FileMesh { source, path, .. } if path.ends_with("x.obj") => source,
+        FormatError::FileMesh { source, path, .. } if path.ends_with("x.obj") => source,
         other => panic!("{other}"),
     };
     assert!(matches!(fault(obj(&facets[1..], &vertices)), MeshError::Open { count: 3, .. }));

@@ -1,14 +1,14 @@
 //! Which links are fingertips, which one is the palm, and the chains of joints between them.
 
-use super::document::{Joint, Kind};
-use super::error::Fault;
-use super::guess;
-use super::tree::Tree;
+use crate::guess;
+use crate::tree::Tree;
 use regrasp_api::{MAX_FINGER_JOINTS, MAX_FINGERS};
+use regrasp_formats::RobotFault as Fault;
+use regrasp_formats::{Joint, Kind};
 
 /// The palm and the fingers as links and joints of the tree.
 #[derive(Debug)]
-pub(super) struct Fingers {
+pub(crate) struct Fingers {
     /// The link whose frame is the hand's.
     pub palm: usize,
     pub chains: Vec<Chain>,
@@ -20,7 +20,7 @@ pub(super) struct Fingers {
 
 /// One finger.
 #[derive(Debug)]
-pub(super) struct Chain {
+pub(crate) struct Chain {
     pub tip: usize,
     /// The joints from the palm to the tip, fixed ones among them.
     pub path: Vec<usize>,
@@ -29,7 +29,7 @@ pub(super) struct Chain {
 }
 
 /// A finger needs as many joints that move by themselves: a fingertip must be able to go in every direction.
-pub(super) const FEWEST_JOINTS: usize = 3;
+pub(crate) const FEWEST_JOINTS: usize = 3;
 
 impl Fingers {
     /// The fingers to the given tips, or to guessed ones; the palm is given, or the last link that all tips hang on.
@@ -47,7 +47,7 @@ impl Fingers {
         }
     }
 
-    pub(super) fn new(tree: &Tree<'_>, tips: &[usize], palm: Option<usize>) -> Result<Self, Fault> {
+    pub(crate) fn new(tree: &Tree<'_>, tips: &[usize], palm: Option<usize>) -> Result<Self, Fault> {
         if tips.len() > MAX_FINGERS {
             let message = format!(
                 "{} fingertips, at most {MAX_FINGERS} are possible; name the ones to use (`tips`), or the `palm` that they hang on",
@@ -68,7 +68,7 @@ impl Fingers {
     }
 }
 
-pub(super) fn moves(joint: &Joint) -> bool {
+pub(crate) fn moves(joint: &Joint) -> bool {
     joint.kind != Kind::Fixed
 }
 
@@ -96,7 +96,7 @@ fn unknown(tree: &Tree<'_>, what: &str, name: &str) -> Fault {
 }
 
 /// The last link that all tips hang on; the root where there is one tip alone.
-pub(super) fn common(tree: &Tree<'_>, tips: &[usize]) -> usize {
+pub(crate) fn common(tree: &Tree<'_>, tips: &[usize]) -> usize {
     let paths: Vec<Vec<usize>> = tips.iter().map(|&tip| tree.path(tip)).collect();
     let root = (0..tree.model.links.len()).find(|&link| tree.above(link).is_none()).unwrap_or(0);
     if tips.len() < 2 {
@@ -146,7 +146,7 @@ fn chain(tree: &Tree<'_>, palm: usize, tip: usize) -> Result<Chain, Fault> {
 }
 
 /// How many of these joints move by themselves.
-pub(super) fn independent(tree: &Tree<'_>, joints: &[usize]) -> usize {
+pub(crate) fn independent(tree: &Tree<'_>, joints: &[usize]) -> usize {
     let by_itself = |joint: &&usize| moves(tree.joint(**joint)) && tree.joint(**joint).mimic.is_none();
     joints.iter().filter(by_itself).count()
 }

@@ -7,7 +7,7 @@ const ANCESTORS: usize = 6;
 
 /// Where to look.
 #[derive(Debug)]
-pub(super) struct Packages {
+pub struct Packages {
     /// The URDF's own folder.
     home: PathBuf,
     /// The given roots, then the folders above the URDF, nearest first.
@@ -15,6 +15,7 @@ pub(super) struct Packages {
 }
 
 impl Packages {
+    /// The folders to look in for a robot's file: the given ones, then those above the file.
     pub fn new(urdf: &Path, given: &[PathBuf]) -> Self {
         let home = urdf.parent().unwrap_or(Path::new("")).to_owned();
         // A bare file name has no ancestors to go through: those of the whole path are meant.

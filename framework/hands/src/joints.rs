@@ -1,18 +1,18 @@
 //! The joints of a finger with their limits, drivers and frames.
 
-use super::UrdfOptions;
-use super::document::{Joint, Kind, Limit};
-use super::error::Fault;
-use super::fingers::{Chain, Fingers};
-use super::tree::Tree;
+use crate::UrdfOptions;
+use crate::fingers::{Chain, Fingers};
+use crate::tree::Tree;
 use regrasp_api::{JointDescription, JointKind, Mimic, Pose, PoseDescription};
+use regrasp_formats::RobotFault as Fault;
+use regrasp_formats::{Joint, Kind, Limit};
 use std::f64::consts::PI;
 
 /// The largest acceleration (rad/s²) of joints for which the file says none.
-pub(super) const ACCELERATION: f64 = 20.0;
+pub(crate) const ACCELERATION: f64 = 20.0;
 
 /// The joints of one finger, without shapes; the first one's frame is the base's.
-pub(super) struct FingerJoints {
+pub(crate) struct FingerJoints {
     pub base: PoseDescription,
     pub joints: Vec<JointDescription>,
     /// The tip link in the last joint's moved frame.
@@ -23,7 +23,7 @@ pub(super) struct FingerJoints {
 const MOST_DRIVERS: usize = 8;
 
 /// The joints of a chain.
-pub(super) fn joints(
+pub(crate) fn joints(
     tree: &Tree<'_>,
     fingers: &Fingers,
     chain: &Chain,

@@ -4,8 +4,8 @@
 //! than it there: on flat faces the box would touch first. Where the visual shapes show that the link ends farther back, and that the tip's own
 //! shape goes on from there, they are believed.
 
-use super::solids::Piece;
-use super::tip::{CLEARANCE, Tip};
+use crate::solids::Piece;
+use crate::tip::{CLEARANCE, Tip};
 use regrasp_api::Vec3;
 
 /// By how much (m) more than what planning keeps the capsule lies inside of the ball: at every contact, this is all the room it has.
@@ -14,7 +14,7 @@ const SPARE: f64 = 1e-4;
 const JOINT: f64 = 1e-3;
 
 /// The shapes that are seen, in the last link's frame L.
-pub(super) struct Seen {
+pub(crate) struct Seen {
     /// Those of the tip link.
     pub tip: Vec<Piece>,
     /// Those of the other links that move with it.
@@ -42,7 +42,7 @@ impl Seen {
             return behind;
         }
         let mut kept: Vec<Piece> =
-            behind.into_iter().filter_map(|piece| super::tip::below(piece, &n, end)).collect();
+            behind.into_iter().filter_map(|piece| crate::tip::below(piece, &n, end)).collect();
         let width = self.width(tip).min(radius - CLEARANCE - SPARE);
         kept.push(rod(tip, width, height - end));
         notes.push(format!(

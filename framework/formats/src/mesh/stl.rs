@@ -1,7 +1,7 @@
 //! STL, binary and ASCII (3D Systems, "StereoLithography Interface Specification", 1988).
 
-use super::{MAX_FACETS, Raw, polygon::triangulate, text};
-use regrasp_api::Vec3;
+use super::{Raw, polygon::triangulate, text};
+use regrasp_api::{MAX_FACETS, Vec3};
 
 const HEADER: usize = 84;
 const RECORD: usize = 50;

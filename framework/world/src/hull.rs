@@ -9,7 +9,7 @@ use regrasp_api::{Mesh, Vec3};
 const GRID: f64 = 1e-6;
 
 /// The convex hull; `None` where the points have no volume.
-pub(super) fn hull(points: &[Vec3]) -> Option<Mesh> {
+pub fn convex_hull(points: &[Vec3]) -> Option<Mesh> {
     let mut rounded: Vec<[i64; 3]> =
         points.iter().map(|p| (p / GRID).map(|x| x.round() as i64).into()).collect();
     rounded.sort_unstable();
@@ -24,20 +24,13 @@ pub(super) fn hull(points: &[Vec3]) -> Option<Mesh> {
 
 /// Approximate convex pieces of a mesh, at most `most` (K. Mamou, "Volumetric hierarchical approximate convex decomposition", in Game Engine
 /// Gems 3, 2016).
-pub(super) fn pieces(vertices: &[Vec3], facets: &[[u32; 3]], most: usize) -> Vec<Mesh> {
+pub fn convex_pieces(vertices: &[Vec3], facets: &[[u32; 3]], most: usize) -> Vec<Mesh> {
     let points: Vec<Vector> = vertices.iter().map(|v| Vector::new(v.x, v.y, v.z)).collect();
     let parameters = VHACDParameters { max_convex_hulls: most as u32, ..Default::default() };
     let parts = VHACD::decompose(&parameters, &points, facets, true);
     let hulls = parts.compute_exact_convex_hulls(&points, facets);
     let corners = |vertices: &[Vector]| vertices.iter().map(|v| Vec3::new(v.x, v.y, v.z)).collect::<Vec<_>>();
-    hulls.iter().filter_map(|(vertices, _)| hull(&corners(vertices))).collect()
-}
-
-/// The box along the axes around points, at least a micrometre thick: its corners.
-pub(super) fn around(points: &[Vec3]) -> (Vec3, Vec3) {
-    let low = points.iter().copied().reduce(|a, b| a.inf(&b)).unwrap_or_default();
-    let high = points.iter().copied().reduce(|a, b| a.sup(&b)).unwrap_or_default();
-    (low - Vec3::repeat(GRID), high + Vec3::repeat(GRID))
+    hulls.iter().filter_map(|(vertices, _)| convex_hull(&corners(vertices))).collect()
 }
 
 #[cfg(test)]
@@ -53,19 +46,17 @@ mod tests {
         let mut points = cube();
         points.extend([Vec3::repeat(0.01), Vec3::new(0.01, 0.01, 0.0), Vec3::new(0.02, 0.01, 0.01)]);
         points.extend(cube());
-        let mesh = hull(&points).unwrap();
+        let mesh = convex_hull(&points).unwrap();
         let volume: f64 = mesh.mass_properties().volume;
         assert!((volume - 8e-6).abs() < 1e-12, "{volume}");
         assert!(mesh.is_locally_convex());
     }
 
     #[test]
-    fn points_without_volume_have_no_hull_but_a_box() {
+    fn points_without_volume_have_no_hull() {
         let flat: Vec<Vec3> = cube().into_iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect();
-        assert!(hull(&flat).is_none());
-        assert!(hull(&flat[..2]).is_none() && hull(&[]).is_none());
-        let (low, high) = around(&flat);
-        assert!(low.z < 0.0 && high.z > 0.0 && high.x > 0.02);
+        assert!(convex_hull(&flat).is_none());
+        assert!(convex_hull(&flat[..2]).is_none() && convex_hull(&[]).is_none());
     }
 
     #[test]
@@ -80,8 +71,8 @@ mod tests {
         facets.extend(others.iter().map(|facet| facet.map(|v| v + vertices.len() as u32)));
         vertices.extend(more);
         let volume = |meshes: &[Mesh]| meshes.iter().map(|mesh| mesh.mass_properties().volume).sum::<f64>();
-        let whole = [hull(&vertices).unwrap()];
-        let parts = pieces(&vertices, &facets, 8);
+        let whole = [convex_hull(&vertices).unwrap()];
+        let parts = convex_pieces(&vertices, &facets, 8);
         assert!(parts.len() >= 2 && volume(&parts) < 0.7 * volume(&whole), "{} pieces", parts.len());
     }
 }

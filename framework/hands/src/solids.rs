@@ -1,13 +1,12 @@
 //! From the geometries of a URDF to convex shapes of links.
 
-use super::document::{Geometry, Link, Solid};
-use super::error::Fault;
-use super::hull;
-use super::packages::Packages;
-use super::rods;
-use crate::mesh::{in_memory, read_points};
+use crate::rods;
 use nalgebra::Point3;
-use regrasp_api::{Mesh, PlacedShape, Pose, PoseDescription, Shape, Vec3};
+use regrasp_api::{Mesh, MeshSource, PlacedShape, Pose, PoseDescription, Shape, Vec3};
+use regrasp_formats::Packages;
+use regrasp_formats::RobotFault as Fault;
+use regrasp_formats::{Geometry, Link, Solid, read_points};
+use regrasp_world::{convex_hull, convex_pieces};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::PathBuf;
@@ -20,7 +19,7 @@ const FARTHEST: f64 = 10.0;
 
 /// A convex solid in the frame B of what it belongs to: all points within `radius` of the hull of `corners`.
 #[derive(Clone, Debug)]
-pub(super) struct Piece {
+pub(crate) struct Piece {
     pub shape: Shape,
     pub X_BS: Pose,
     /// In B (m).
@@ -50,7 +49,7 @@ impl Piece {
 
     /// A convex mesh, in B.
     pub fn of_mesh(mesh: &Mesh) -> Self {
-        let shape = Shape::Mesh(in_memory(mesh));
+        let shape = Shape::Mesh(MeshSource::of(mesh));
         Self::new(shape, Pose::identity(), mesh.vertices(), 0.0)
     }
 
@@ -80,7 +79,7 @@ impl Piece {
 
 /// Reads geometries, each mesh file once.
 #[derive(Debug)]
-pub(super) struct Shaper {
+pub(crate) struct Shaper {
     packages: Packages,
     /// The most convex pieces of a mesh; with 1 its hull is taken.
     most_pieces: usize,
@@ -149,7 +148,7 @@ impl Shaper {
             }
             Geometry::Cylinder { radius, length } => {
                 let points = prism(*radius, *length);
-                let mesh = hull::hull(&points).ok_or_else(|| {
+                let mesh = convex_hull(&points).ok_or_else(|| {
                     Fault::at(solid.line, "the cylinder is thinner than a micrometre; lengths are in metres")
                 })?;
                 one(Piece::of_mesh(&mesh).moved(&X), &format!("a prism of {SIDES} sides around a cylinder"))
@@ -184,9 +183,9 @@ impl Shaper {
             return Err(Fault::at(solid.line, message));
         }
         let parts =
-            if self.most_pieces > 1 { hull::pieces(&points, facets, self.most_pieces) } else { Vec::new() };
+            if self.most_pieces > 1 { convex_pieces(&points, facets, self.most_pieces) } else { Vec::new() };
         let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let (pieces, what) = match (parts.len(), hull::hull(&points)) {
+        let (pieces, what) = match (parts.len(), convex_hull(&points)) {
             (count @ 2.., _) => (parts, format!("{count} convex pieces of {file} ({} facets)", facets.len())),
             (_, Some(whole)) => (vec![whole], format!("the convex hull of {file} ({} facets)", facets.len())),
             (_, None) => {
@@ -200,8 +199,15 @@ impl Shaper {
     }
 }
 
+/// The box along the axes around points, at least a micrometre thick: its lowest and highest corner.
+pub(crate) fn around(points: &[Vec3]) -> (Vec3, Vec3) {
+    let low = points.iter().copied().reduce(|a, b| a.inf(&b)).unwrap_or_default();
+    let high = points.iter().copied().reduce(|a, b| a.sup(&b)).unwrap_or_default();
+    (low - Vec3::repeat(1e-6), high + Vec3::repeat(1e-6))
+}
+
 fn boxed(points: &[Vec3], X: &Pose) -> Piece {
-    let (low, high) = hull::around(points);
+    let (low, high) = around(points);
     let half = (high - low) / 2.0;
     Piece::cuboid(half, X * Pose::translation(low.x + half.x, low.y + half.y, low.z + half.z))
 }

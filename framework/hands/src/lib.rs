@@ -14,29 +14,20 @@
 //! is either given in the options, or chosen and said in the report; limits are never invented.
 
 mod contacts;
-mod document;
-mod error;
 mod fingers;
 mod guess;
-mod hull;
 mod joints;
-mod packages;
 mod rods;
 mod solids;
 mod tip;
 mod tree;
 mod trim;
 
-pub use error::UrdfError;
-
-use crate::error::WorldError;
-use document::{Joint, Kind, Model};
-use error::Fault;
 use fingers::{Chain, Fingers};
-use packages::Packages;
 use regrasp_api::{
     FingerDescription, Fingertip, HandDescription, JointDescription, PlacedShape, Pose, Rotation,
 };
+use regrasp_formats::{Joint, Kind, Packages, Robot, RobotFault as Fault, RobotFileError, parse_urdf};
 use serde::Serialize;
 use solids::{Piece, Shaper};
 use std::path::{Path, PathBuf};
@@ -105,7 +96,7 @@ pub struct UrdfReport {
 /// Reads the hand of a URDF file.
 ///
 /// Some 10 ms, more with large meshes; the same file and options give the same hand.
-pub fn read_urdf(path: &Path, options: &UrdfOptions) -> Result<UrdfHand, UrdfError> {
+pub fn read_urdf(path: &Path, options: &UrdfOptions) -> Result<UrdfHand, RobotFileError> {
     let text = read(path).map_err(|reason| Fault::of_file(reason).within(path))?;
     convert(path, &text, options).map_err(|fault| fault.within(path))
 }
@@ -122,7 +113,7 @@ fn read(path: &Path) -> Result<String, String> {
 
 fn convert(path: &Path, text: &str, options: &UrdfOptions) -> Result<UrdfHand, Fault> {
     check_options(options)?;
-    let model = document::parse(text)?;
+    let model = parse_urdf(text)?;
     let tree = Tree::new(&model)?;
     let fingers = Fingers::find(&tree, &options.tips, options.palm.as_deref())?;
     let mut shaper = Shaper::new(Packages::new(path, &options.packages), options.mesh_pieces.unwrap_or(1));
@@ -136,10 +127,7 @@ fn convert(path: &Path, text: &str, options: &UrdfOptions) -> Result<UrdfHand, F
     let mut report = reader.report;
     report.shapes = reader.shaper.notes;
     skipped(&model, &mut report.ignored);
-    let contacts = contacts::complete(&mut description).map_err(|error| match error {
-        WorldError::Hand(error) => Fault::from(error),
-        other => Fault::of_file(other.to_string()),
-    })?;
+    let contacts = contacts::complete(&mut description).map_err(contacts::refused)?;
     report.touching = contacts.touching;
     report.often_touching = contacts.often;
     for [a, b] in contacts.at_rest {
@@ -162,7 +150,7 @@ fn check_options(options: &UrdfOptions) -> Result<(), Fault> {
 }
 
 /// Elements that say nothing about a hand's geometry, each kind once.
-fn skipped(model: &Model, ignored: &mut Vec<String>) {
+fn skipped(model: &Robot, ignored: &mut Vec<String>) {
     let mut kinds = model.skipped.clone();
     kinds.sort_unstable();
     kinds.dedup();

@@ -1,0 +1,124 @@
+//! Why a file is refused.
+
+use regrasp_api::{MeshError, MeshSourceError};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why a mesh is refused: each message names the key or the file, the value and what is allowed.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum FormatError {
+    /// A value that cannot be used; the text says why.
+    #[error("`{key}`: {reason}")]
+    Value {
+        /// The path of the key.
+        key: String,
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// A number outside its range.
+    #[error("`{key}` = {value} is outside {range}")]
+    Range {
+        /// The path of the key.
+        key: String,
+        /// The value that was given.
+        value: f64,
+        /// The allowed range.
+        range: &'static str,
+    },
+    /// A file that cannot be read.
+    #[error("`{key}`: cannot read `{}`: {reason}", path.display())]
+    File {
+        /// The path of the key.
+        key: String,
+        /// The file, as it was looked for.
+        path: PathBuf,
+        /// Why, with the line where there is one.
+        reason: String,
+    },
+    /// A file whose mesh cannot be used.
+    #[error("`{key}`: the mesh of `{}` is refused: {source}", path.display())]
+    FileMesh {
+        /// The path of the key.
+        key: String,
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with the mesh, and the fix.
+        source: MeshError,
+    },
+    /// A mesh given in place that cannot be used.
+    #[error("`{key}`: the mesh is refused: {source}")]
+    Mesh {
+        /// The path of the key.
+        key: String,
+        /// What is wrong with the mesh, and the fix.
+        source: MeshError,
+    },
+}
+
+impl FormatError {
+    /// A source, at `key`, that gives no mesh; `path` is the file that was read, if there is one.
+    pub(crate) fn source(key: &str, path: Option<&Path>, error: MeshSourceError) -> Self {
+        match (error, path) {
+            (MeshSourceError::Mesh(source), Some(path)) => {
+                Self::FileMesh { key: format!("{key}.file"), path: path.into(), source }
+            }
+            (MeshSourceError::Mesh(source), None) => Self::Mesh { key: key.into(), source },
+            (MeshSourceError::Scale(value), _) => {
+                Self::Range { key: format!("{key}.scale"), value, range: "1e-9..=1e9" }
+            }
+            (error @ MeshSourceError::TooMany(_), None) => {
+                Self::Value { key: format!("{key}.facets"), reason: error.to_string() }
+            }
+            (error, _) => Self::Value { key: key.into(), reason: error.to_string() },
+        }
+    }
+}
+
+/// Why a robot's file is refused: the file, the line where there is one, what is wrong there and what probably mends it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RobotFileError {
+    /// The file.
+    pub file: PathBuf,
+    /// The line, counted from 1.
+    pub line: Option<usize>,
+    /// What is wrong, and the likely fix.
+    pub message: String,
+}
+
+impl fmt::Display for RobotFileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}\n  --> {}", self.message, self.file.display())?;
+        self.line.map_or(Ok(()), |line| write!(f, ":{line}"))
+    }
+}
+
+impl std::error::Error for RobotFileError {}
+
+/// A fault within one file: its line, if it has one, and what is wrong.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{message}")]
+pub struct RobotFault {
+    /// The line, counted from 1.
+    pub line: Option<usize>,
+    /// What is wrong, and the likely fix.
+    pub message: String,
+}
+
+impl RobotFault {
+    /// A fault of the element that begins in `line`.
+    pub fn at(line: usize, message: impl Into<String>) -> Self {
+        Self { line: Some(line), message: message.into() }
+    }
+
+    /// A fault of the file as a whole.
+    pub fn of_file(message: impl Into<String>) -> Self {
+        Self { line: None, message: message.into() }
+    }
+
+    /// The fault, of this file.
+    pub fn within(self, file: &Path) -> RobotFileError {
+        RobotFileError { file: file.to_owned(), line: self.line, message: self.message }
+    }
+}

@@ -1,0 +1,69 @@
+//! Meshes from STL, OBJ, PLY and COLLADA files or given in place.
+
+mod collada;
+mod obj;
+mod ply;
+mod polygon;
+mod stl;
+mod text;
+mod weld;
+
+use crate::error::FormatError;
+use regrasp_api::{MAX_FACETS, Mesh, MeshSource, Vec3};
+use std::path::Path;
+
+/// The largest mesh file (bytes): an ASCII STL of [`MAX_FACETS`] facets is smaller.
+const MAX_BYTES: u64 = 1 << 30;
+
+/// Vertices and facets as a file has them: in the file's unit (COLLADA: in metres), not yet checked.
+type Raw = (Vec<Vec3>, Vec<[u32; 3]>);
+
+/// The mesh of `source`, in metres; a file is looked for relative to the folder `base`.
+///
+/// Vertices of a file at equal coordinates are merged, and vertices that no facet uses are dropped. `key` is the path of
+/// the source in its description, for messages.
+pub fn load_mesh(source: &MeshSource, base: &Path, key: &str) -> Result<Mesh, FormatError> {
+    match &source.file {
+        Some(file) if !source.is_written_out() => from_file(source, &base.join(file), key),
+        _ => source.mesh().map_err(|error| FormatError::source(key, None, error)),
+    }
+}
+
+fn from_file(source: &MeshSource, path: &Path, key: &str) -> Result<Mesh, FormatError> {
+    let fail = |reason| FormatError::File { key: format!("{key}.file"), path: path.into(), reason };
+    let (vertices, facets) = weld::welded(read(path).map_err(fail)?);
+    source.adjusted(vertices, facets).map_err(|error| FormatError::source(key, Some(path), error))
+}
+
+/// Vertices and facets as a file has them, vertices at equal coordinates merged: for uses that need no closed surface, such as a hull.
+pub fn read_points(path: &Path) -> Result<Raw, String> {
+    read(path).map(weld::welded)
+}
+
+fn read(path: &Path) -> Result<Raw, String> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let parse = match extension.as_str() {
+        "stl" => stl::parse,
+        "obj" => obj::parse,
+        "ply" => ply::parse,
+        "dae" => collada::parse,
+        _ => return Err(format!("`.{extension}` is not one of .stl, .obj, .ply, .dae; convert the file")),
+    };
+    let size = std::fs::metadata(path).map_err(|error| error.to_string())?.len();
+    if size > MAX_BYTES {
+        return Err(format!("{size} bytes are more than the largest allowed {MAX_BYTES}; simplify the mesh"));
+    }
+    let raw = parse(&std::fs::read(path).map_err(|error| error.to_string())?)?;
+    check_count(raw.1.len())?;
+    Ok(raw)
+}
+
+fn check_count(facets: usize) -> Result<(), String> {
+    if facets <= MAX_FACETS {
+        return Ok(());
+    }
+    Err(format!("{facets} facets are more than the largest allowed {MAX_FACETS}; simplify the mesh"))
+}
+
+#[cfg(test)]
+mod tests;
