@@ -1,6 +1,7 @@
 //! The command line's form.
 
 use crate::numbers::{seconds, whole};
+use crate::outputs::OverwriteArgs;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -66,9 +67,11 @@ pub struct PlanArgs {
     /// Compute with this many threads, 1 to 256; the plan is the same.
     #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16, 1, 256>)]
     pub threads: u16,
-    /// Write the plan to this file.
+    /// Write the plan to this file; `-` is standard output, and the report then goes to standard error.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub overwrite: OverwriteArgs,
     /// Keep the stable grasps of the manipulation graph in this file, `.json` or `.npz`.
     #[arg(long, value_name = "FILE")]
     pub grasps: Option<PathBuf>,

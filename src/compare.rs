@@ -9,7 +9,7 @@ mod vary;
 pub use args::CompareArgs;
 
 use crate::watch::Watch;
-use crate::{Failure, overrides, plugins, say, say_json};
+use crate::{Failure, outputs, overrides, plugins, say, say_json};
 use progress::Bar;
 use regrasp::api::Interrupt;
 use regrasp::host::Registry;
@@ -20,6 +20,7 @@ use regrasp::study::compare::{
 use std::{panic, thread};
 
 pub fn run(args: &CompareArgs) -> Result<(), Failure> {
+    outputs::check_folder(&args.output)?;
     if !args.merge.is_empty() {
         let study = compare::merge(&args.merge, &args.output).map_err(Failure::bad_input)?;
         let (_, records) = compare::read_study(&args.output).map_err(Failure::bad_input)?;

@@ -1,5 +1,6 @@
 //! `regrasp export`
 
+use crate::outputs::{self, Kind, OverwriteArgs};
 use crate::table::Table;
 use crate::{Failure, say, say_json};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -29,6 +30,8 @@ pub struct ExportArgs {
     /// Write the files into this folder, which is made where there is none.
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub overwrite: OverwriteArgs,
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub json: bool,
@@ -42,6 +45,7 @@ fn format() -> impl TypedValueParser<Value = Format> {
 }
 
 pub fn run(args: &ExportArgs) -> Result<(), Failure> {
+    outputs::check_folder(&args.output)?;
     let plan = regrasp::plan::read(&args.plan).map_err(Failure::bad_input)?;
     let refuse = |error: ExportError| {
         Failure::bad_input(format!("`{}` cannot be exported: {error}", args.plan.display()))
@@ -57,6 +61,11 @@ pub fn run(args: &ExportArgs) -> Result<(), Failure> {
     }
     // Everything is made before anything is written.
     make_folder(&args.output)?;
+    for (_, file) in &files {
+        let path = args.output.join(&file.name);
+        outputs::check(&[args.plan.clone()], &[(&path, Kind::Export)], OverwriteArgs { force: true })?;
+        outputs::check_export(&path, &file.bytes, args.overwrite)?;
+    }
     for (_, file) in &files {
         write(&args.output.join(&file.name), &file.bytes)?;
     }
@@ -94,7 +103,7 @@ fn tell(args: &ExportArgs, files: &[(Format, File)], notes: &[String]) -> Result
     }
     for note in notes {
         // A reader of standard error that has gone away is no failure.
-        let _ = writeln!(io::stderr(), "note: {note}");
+        let _ = writeln!(io::stderr(), "note: {}", crate::terminal::printable(note));
     }
     let mut table = Table::new("<<>", &["format", "file", "kB"]);
     for (format, file) in files {

@@ -1,5 +1,6 @@
 //! How the program ends when it does not succeed.
 
+use crate::terminal::printable;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -40,7 +41,7 @@ impl Failure {
     pub fn exit(self) -> ExitCode {
         let label = if self.code == 2 { "error: " } else { "" };
         // A reader of standard error that has gone away changes no exit code.
-        let _ = writeln!(io::stderr(), "{label}{}", self.message.trim_end());
+        let _ = writeln!(io::stderr(), "{label}{}", printable(self.message.trim_end()));
         ExitCode::from(self.code)
     }
 }

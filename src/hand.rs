@@ -1,13 +1,16 @@
 //! `regrasp hand`: how a URDF is understood, and the hand file that it becomes.
 
 use crate::numbers::whole;
+use crate::outputs::{self, HAND_MARK, Kind, OverwriteArgs};
 use crate::table::Table;
+use crate::terminal::printable;
 use crate::{Failure, say, say_json};
 use clap::Args;
 use regrasp::api::{FingerIndex, Hand, HandDescription, JointDescription, Vec3};
 use regrasp::hands::{UrdfHand, UrdfOptions, UrdfReport, read_urdf};
 use regrasp::world::{ChainHand, FingerWorkspace, ObjectPlace, finger_workspace, object_place};
 use serde_json::{Value, json};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Show how a hand's URDF is understood: fingers, joints, limits, reach, shapes, and what is ignored.
@@ -51,9 +54,11 @@ pub struct HandArgs {
     /// Propose a position for a ball of this radius (m).
     #[arg(long, value_name = "M", default_value_t = 0.03, allow_negative_numbers = true, value_parser = radius)]
     pub ball: f64,
-    /// Write the hand file, with all meshes in it.
+    /// Write the hand file, with all meshes in it; `-` is standard output, and the report then goes to standard error.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub overwrite: OverwriteArgs,
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub json: bool,
@@ -73,7 +78,8 @@ fn radius(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(args: &HandArgs) -> Result<(), Failure> {
-    args.output.as_deref().map_or(Ok(()), regrasp::plan::check_place).map_err(Failure::bad_input)?;
+    let wished = args.output.as_deref().map(|path| (path, Kind::Hand));
+    outputs::check(&[args.file.clone()], wished.as_slice(), args.overwrite)?;
     let options = UrdfOptions {
         tips: args.tips.clone(),
         fingertip_radius: args.fingertip_radius,
@@ -97,6 +103,11 @@ pub fn run(args: &HandArgs) -> Result<(), Failure> {
         place: object_place(&hand, args.ball),
         ball: args.ball,
     };
+    if args.output.as_deref().is_some_and(outputs::is_standard) {
+        // Standard output is the hand file's.
+        let _ = std::io::stderr().write_all(printable(&understood.text(None)).as_bytes());
+        return Ok(());
+    }
     if args.json { say_json(&understood.json()) } else { say(&understood.text(args.output.as_deref())) }
 }
 
@@ -106,6 +117,10 @@ fn fingers(hand: &ChainHand) -> impl Iterator<Item = FingerIndex> + use<> {
 
 fn write(path: &Path, hand: &HandDescription) -> Result<(), Failure> {
     let text = toml::to_string(hand).map_err(Failure::bad_input)?;
+    let text = format!("{HAND_MARK}\n{text}");
+    if outputs::is_standard(path) {
+        return say(&text);
+    }
     regrasp::plan::write_file(path, |out| out.write_all(text.as_bytes())).map_err(Failure::bad_input)
 }
 

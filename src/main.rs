@@ -12,6 +12,7 @@ mod hand;
 mod man;
 mod new_plugin;
 mod numbers;
+mod outputs;
 mod overrides;
 mod plan;
 mod plugins;
@@ -23,6 +24,7 @@ mod report;
 mod scenarios;
 mod schema;
 mod table;
+mod terminal;
 mod verify;
 mod view;
 mod watch;
@@ -63,7 +65,7 @@ fn main() -> ExitCode {
 /// Writes to standard output; a reader that has gone away, as in `regrasp plugins | head`, is no failure.
 fn say(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(terminal::printable(text).as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::bad_input(format!("cannot write to standard output: {error}")))
         }

@@ -21,6 +21,7 @@ pub fn run(args: &ManArgs) -> Result<(), Failure> {
     let mut program = Arguments::command();
     program.build();
     let Some(folder) = &args.output else { return say(&page(program)?) };
+    crate::outputs::check_folder(folder)?;
     export::make_folder(folder)?;
     let pages =
         program.get_subcommands().filter(|command| !command.is_hide_set() && command.get_name() != "help");

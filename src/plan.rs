@@ -1,7 +1,9 @@
 //! `regrasp plan`
 
 use crate::args::PlanArgs;
+use crate::outputs::{self, Kind};
 use crate::progress::Line;
+use crate::terminal::printable;
 use crate::watch::Watch;
 use crate::{Failure, grasps, overrides, plugins, report, say, say_json, view};
 use regrasp::plan::{Plan, StoppedBy};
@@ -11,13 +13,11 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 pub fn run(args: &PlanArgs) -> Result<(), Failure> {
+    check_outputs(args)?;
     let registry = plugins::registry(&args.libraries)?;
     let mut scenario = scenario::load(&args.scenario, &registry).map_err(Failure::bad_input)?;
     remark(&scenario.remarks);
     overrides::apply(&mut scenario, args)?;
-    // A place where nothing can be written is refused before any work is done.
-    args.output.as_deref().map_or(Ok(()), regrasp::plan::check_place).map_err(Failure::bad_input)?;
-    grasps::check(args.grasps.as_deref())?;
     let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::bad_input)?;
     let watch = Watch::start(scenario.problem.limits.budget.time_limit);
     let line = Line::new();
@@ -40,6 +40,9 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     };
     if args.json {
         say_json(&summary.json())?;
+    } else if args.output.as_deref().is_some_and(outputs::is_standard) {
+        // Standard output is the plan's.
+        let _ = io::stderr().write_all(printable(&summary.text()).as_bytes());
     } else {
         say(&summary.text())?;
         if args.rejections && ran.outcome.status == Status::Solved {
@@ -54,14 +57,43 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
 fn remark(remarks: &[String]) {
     for remark in remarks {
         // A reader of standard error that has gone away is no failure.
-        let _ = writeln!(io::stderr(), "note: {remark}");
+        let _ = writeln!(io::stderr(), "note: {}", printable(remark));
     }
+}
+
+/// Refuses what could not be written, or would destroy something, before any work is done.
+fn check_outputs(args: &PlanArgs) -> Result<(), Failure> {
+    let standard = args.output.as_deref().is_some_and(outputs::is_standard);
+    if standard && args.json {
+        return Err(Failure::bad_input(
+            "`-o -` and `--json` both want standard output; name a file with `-o`",
+        ));
+    }
+    grasps::check(args.grasps.as_deref())?;
+    let mut inputs = outputs::files_of(&args.scenario);
+    inputs.extend(args.libraries.load.iter().cloned());
+    let plan = args.output.as_deref().filter(|_| !standard);
+    let others = plan.map(|path| [beside(path, "partial"), beside(path, "rejected")]).into_iter().flatten();
+    let page = plan.filter(|_| args.view || args.view_graph).map(|path| path.with_extension("html"));
+    let (others, page): (Vec<PathBuf>, Option<PathBuf>) = (others.collect(), page);
+    let mut wished: Vec<(&Path, Kind)> = Vec::new();
+    wished.extend(plan.map(|path| (path, Kind::Plan)));
+    wished.extend(others.iter().map(|path| (path.as_path(), Kind::Plan)));
+    wished.extend(args.grasps.as_deref().map(|path| (path, Kind::Grasps)));
+    wished.extend(page.as_deref().map(|path| (path, Kind::Page)));
+    outputs::check(&inputs, &wished, args.overwrite)
 }
 
 /// Writes the plan: under the wished name only if it is complete and verified.
 fn save(output: Option<&Path>, run: &Run) -> Result<Option<PathBuf>, Failure> {
     let (Some(wished), Some(plan)) = (output, &run.plan) else { return Ok(None) };
     let path = match (run.outcome.status, run.is_verified()) {
+        (Status::Solved, true) if outputs::is_standard(wished) => {
+            let mut out = io::stdout().lock();
+            regrasp::plan::write_json(plan, &mut out).map_err(Failure::bad_input)?;
+            return Ok(None);
+        }
+        _ if outputs::is_standard(wished) => return Ok(None),
         (Status::Solved, true) => wished.to_owned(),
         (_, true) => beside(wished, "partial"),
         (_, false) => beside(wished, "rejected"),

@@ -22,9 +22,11 @@ pub struct ReplayArgs {
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub json: bool,
-    /// Write the JSON object to this file, with the object's pose at every state of the plan.
+    /// Write the JSON object to this file, with the object's pose at every state of the plan; `-` is standard output.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub overwrite: crate::outputs::OverwriteArgs,
     /// Multiply the simulated friction by this, 0 to 10; the forces are chosen for the plan's own.
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0, value_parser = number::<0, 10>)]
     pub friction_scale: f64,

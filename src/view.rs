@@ -5,6 +5,7 @@ mod open;
 mod replay;
 
 use crate::args::PlanArgs;
+use crate::outputs::{self, Kind, OverwriteArgs};
 use crate::{Failure, say};
 use regrasp::plan::Plan;
 use regrasp::run::{Run, Setup};
@@ -21,35 +22,39 @@ Examples:\n  regrasp view plan.json\n  regrasp replay plan.json -o replay.json; 
 pub struct ViewArgs {
     /// A plan file.
     pub plan: PathBuf,
-    /// Write the page to this file; by default the plan's name with `.html`.
+    /// Write the page to this file, `-` for standard output; by default the plan's name with `.html`.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub overwrite: OverwriteArgs,
     /// Show beside it where a simulation took the object: a file of `regrasp replay PLAN -o FILE`.
     #[arg(long, value_name = "FILE")]
     pub replay: Option<PathBuf>,
 }
 
 pub fn run(args: &ViewArgs) -> Result<(), Failure> {
-    let plan = regrasp::plan::read(&args.plan).map_err(Failure::bad_input)?;
     let output = args.output.clone().unwrap_or_else(|| args.plan.with_extension("html"));
-    if [Some(&args.plan), args.replay.as_ref()].contains(&Some(&output)) {
-        let reason =
-            format!("the page would take the place of `{}`; name another file with `-o`", output.display());
-        return Err(Failure::bad_input(reason));
-    }
-    // A place where nothing can be written is refused before any work is done.
-    regrasp::plan::check_place(&output).map_err(Failure::bad_input)?;
+    let inputs: Vec<PathBuf> = [&args.plan].into_iter().chain(&args.replay).cloned().collect();
+    outputs::check(&inputs, &[(&output, Kind::Page)], args.overwrite)?;
+    let plan = regrasp::plan::read(&args.plan).map_err(Failure::bad_input)?;
     let replay = args.replay.as_deref().map(|path| replay::read(path, &plan)).transpose()?;
     let extras = Extras { replay, ..extras::of_plan(&plan) };
     let bytes = write_page(&plan, &extras, &output).map_err(|reason| {
         Failure::bad_input(format!("`{}` cannot be shown: {reason}", args.plan.display()))
     })?;
+    if outputs::is_standard(&output) {
+        return Ok(());
+    }
     say(&format!("{}: {:.1} MB; open it in a browser\n", output.display(), bytes as f64 / 1e6))
 }
 
 /// Writes the page and says how many bytes it has.
 fn write_page(plan: &Plan, extras: &Extras, output: &Path) -> Result<usize, String> {
     let page = regrasp::view::page(plan, extras).map_err(|error| error.to_string())?;
+    if outputs::is_standard(output) {
+        std::io::stdout().write_all(page.as_bytes()).map_err(|error| error.to_string())?;
+        return Ok(page.len());
+    }
     let put = |writer: &mut dyn Write| writer.write_all(page.as_bytes());
     regrasp::plan::write_file(output, put).map_err(|error| error.to_string())?;
     Ok(page.len())

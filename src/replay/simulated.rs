@@ -1,6 +1,7 @@
 //! What `regrasp replay` does where the simulation is built in.
 
 use super::ReplayArgs;
+use crate::outputs::{self, Kind};
 use crate::table::Table;
 use crate::{Failure, say, say_json};
 use regrasp::api::{FingerIndex, Problem};
@@ -16,16 +17,19 @@ const SLIP: f64 = 1e-3;
 const GAP: f64 = 5e-4;
 
 pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
+    let wished = args.output.as_deref().map(|path| (path, Kind::Replay));
+    outputs::check(&[args.plan.clone()], wished.as_slice(), args.overwrite)?;
+    let standard = args.output.as_deref().is_some_and(outputs::is_standard);
     let plan = regrasp::plan::read(&args.plan).map_err(Failure::bad_input)?;
-    // A place where nothing can be written is refused before any work is done.
-    args.output.as_deref().map_or(Ok(()), regrasp::plan::check_place).map_err(Failure::bad_input)?;
     let told = Told::new(args, &plan)?;
-    if let Some(path) = &args.output {
+    if let Some(path) = args.output.as_ref().filter(|_| !standard) {
         let json = told.json(true);
         regrasp::plan::write_file(path, |writer| regrasp::plan::write_json(&json, writer))
             .map_err(Failure::bad_input)?;
     }
-    if args.json {
+    if standard {
+        say_json(&told.json(true))?
+    } else if args.json {
         say_json(&told.json(false))?
     } else {
         say(&told.text())?

@@ -33,11 +33,15 @@ struct Moment {
     orientation: [f64; 4],
 }
 
+/// The largest file of a replay that is read (bytes).
+const MAX_BYTES: u64 = 512 << 20;
+
 /// Reads where a simulation of `plan` took the object.
 pub fn read(path: &Path, plan: &Plan) -> Result<ReplayTrack, Failure> {
     let refuse = |reason: String| Failure::bad_input(format!("`{}` {reason}", path.display()));
     let made = "; `regrasp replay PLAN -o FILE` makes one";
-    let bytes = std::fs::read(path).map_err(|error| refuse(format!("cannot be read: {error}{made}")))?;
+    let bytes = regrasp::api::read_at_most(path, MAX_BYTES)
+        .map_err(|error| refuse(format!("cannot be read: {error}{made}")))?;
     let replay: Replay = serde_json::from_slice(&bytes)
         .map_err(|error| refuse(format!("is not a file of `regrasp replay`: {error}{made}")))?;
     track(&replay, plan).map_err(|reason| refuse(format!("{reason}{made}")))

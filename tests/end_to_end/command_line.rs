@@ -112,7 +112,12 @@ fn endless(desk: &Desk) {
 
 #[test]
 #[cfg(unix)]
-fn ctrl_c_ends_the_search_with_its_own_exit_code() {
+fn ctrl_c_and_its_like_end_the_search_with_their_own_exit_code() {
+    ["-INT", "-TERM", "-HUP"].into_iter().for_each(ends_the_search);
+}
+
+#[cfg(unix)]
+fn ends_the_search(signal: &str) {
     let desk = Desk::new();
     endless(&desk);
     let child = Command::new(env!("CARGO_BIN_EXE_regrasp"))
@@ -123,7 +128,7 @@ fn ctrl_c_ends_the_search_with_its_own_exit_code() {
         .spawn()
         .expect("the program was built for this test");
     std::thread::sleep(Duration::from_millis(1500));
-    let signalled = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
+    let signalled = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill runs");
     assert!(signalled.success());
     let said = Said::of(&child.wait_with_output().expect("the program ends"));
     said.assert_fails(130, &["interrupted", "goal 2", "kept as `plan.partial.json`"]);

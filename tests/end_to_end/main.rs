@@ -5,4 +5,5 @@ mod command_line;
 mod compare;
 mod desk;
 mod golden;
+mod outputs;
 mod wording;

@@ -14,6 +14,7 @@ impl Xml {
     pub fn new() -> Self {
         let mut xml = Self(Writer::new_with_indent(Vec::new(), b' ', 2));
         xml.write(Event::Decl(BytesDecl::new("1.0", None, None)));
+        xml.comment(concat!("Written by regrasp ", env!("CARGO_PKG_VERSION")));
         xml
     }
 

@@ -13,10 +13,13 @@ struct Header {
     version: Option<Value>,
 }
 
+/// The largest plan file that is read (bytes).
+const MAX_BYTES: u64 = 512 << 20;
+
 /// Reads a plan file. Whatever the file holds, the answer is a plan or an error that names it.
 pub fn read(path: &Path) -> Result<Plan, ReadError> {
     let owned = || path.to_owned();
-    match std::fs::read(path) {
+    match regrasp_api::read_at_most(path, MAX_BYTES) {
         Ok(bytes) => from_json(&bytes, path),
         Err(error) if error.kind() == ErrorKind::NotFound => Err(ReadError::Missing { path: owned() }),
         Err(error) if error.kind() == ErrorKind::IsADirectory => Err(ReadError::IsFolder { path: owned() }),

@@ -11,6 +11,8 @@ mod file;
 mod format;
 mod json;
 mod motion;
+#[cfg(target_os = "linux")]
+mod nameless;
 mod statistics;
 mod surface;
 mod timing;

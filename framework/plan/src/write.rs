@@ -78,11 +78,27 @@ fn write_error(error: io::Error, path: &Path) -> WriteError {
 }
 
 fn replace(path: &Path, folder: &Path, put: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    #[cfg(target_os = "linux")]
+    if let Some(file) = crate::nameless::open(folder) {
+        buffered(&file, put)?;
+        keep_mode(&file, path)?;
+        file.sync_all()?;
+        return crate::nameless::put_in_place(&file, path, folder);
+    }
     let file = temporary(folder)?;
     buffered(file.as_file(), put)?;
+    keep_mode(file.as_file(), path)?;
     file.as_file().sync_all()?;
     file.persist(path).map_err(|error| error.error)?;
     Ok(())
+}
+
+/// A file that replaces another may be used as that could be.
+fn keep_mode(file: &File, replaced: &Path) -> io::Result<()> {
+    match std::fs::metadata(replaced) {
+        Ok(found) => file.set_permissions(found.permissions()),
+        Err(_) => Ok(()),
+    }
 }
 
 fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
@@ -159,6 +175,23 @@ mod tests {
         let refused = check_place(&inside("kept.json")).unwrap_err().to_string();
         assert!(refused.contains("kept.json") && refused.contains("permission denied"), "{refused}");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_file_that_is_replaced_keeps_its_mode_and_leaves_nothing_behind() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plan.json");
+        std::fs::write(&path, "old").unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o640)).unwrap();
+        write_file(&path, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"new");
+        assert_eq!(std::fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
+        write_file(&path, |_| Err(io::Error::from(ErrorKind::StorageFull))).unwrap_err();
+        assert_eq!(std::fs::read(&path).unwrap(), b"new");
+        write_file(&folder.path().join("other.json"), |out| out.write_all(b"other")).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
     #[test]

@@ -49,11 +49,11 @@ fn read(path: &Path) -> Result<Raw, String> {
         "dae" => collada::parse,
         _ => return Err(format!("`.{extension}` is not one of .stl, .obj, .ply, .dae; convert the file")),
     };
-    let size = std::fs::metadata(path).map_err(|error| error.to_string())?.len();
-    if size > MAX_BYTES {
-        return Err(format!("{size} bytes are more than the largest allowed {MAX_BYTES}; simplify the mesh"));
-    }
-    let raw = parse(&std::fs::read(path).map_err(|error| error.to_string())?)?;
+    let bytes = regrasp_api::read_at_most(path, MAX_BYTES).map_err(|error| match error.kind() {
+        std::io::ErrorKind::FileTooLarge => format!("{error}; simplify the mesh"),
+        _ => error.to_string(),
+    })?;
+    let raw = parse(&bytes)?;
     check_count(raw.1.len())?;
     Ok(raw)
 }

@@ -14,14 +14,19 @@ pub struct Inspected {
     pub ids: Vec<String>,
     /// What its section holds.
     pub(super) section: Vec<u8>,
+    /// The whole file: what was inspected is what is loaded, whatever becomes of the file meanwhile.
+    pub(super) bytes: Vec<u8>,
 }
+
+/// The largest library that is read (bytes).
+const MAX_BYTES: u64 = 1 << 30;
 
 /// Reads the library at `path` without loading it, and refuses it where it does not fit this program.
 pub fn inspect(path: &Path) -> Result<Inspected, LoadError> {
     let unreadable =
         |error: std::io::Error| LoadError::Unreadable { path: path.into(), cause: error.to_string() };
     let absolute = path.canonicalize().map_err(unreadable)?;
-    let bytes = std::fs::read(&absolute).map_err(unreadable)?;
+    let bytes = regrasp_api::read_at_most(&absolute, MAX_BYTES).map_err(unreadable)?;
     let section = section(path, &bytes)?;
     let text = String::from_utf8_lossy(&section);
     let lines = parse(&text);
@@ -30,7 +35,7 @@ pub fn inspect(path: &Path) -> Result<Inspected, LoadError> {
         return Err(LoadError::NoPlugins { path: path.into() });
     }
     compare(path, &lines)?;
-    Ok(Inspected { path: absolute, ids, section })
+    Ok(Inspected { path: absolute, ids, section, bytes })
 }
 
 /// The section that the export macro wrote.

@@ -140,11 +140,14 @@ fn with_hint(error: ScenarioError, path: &Path) -> ScenarioError {
     ScenarioError::Unreadable { place, cause: format!("{cause}; {hint}") }
 }
 
+/// The largest scenario or hand file that is read (bytes): meshes may stand in them.
+const MAX_BYTES: u64 = 256 << 20;
+
 /// The text of a file, which must be UTF-8.
 pub fn read(path: &Path) -> Result<String, ScenarioError> {
     let unreadable =
         |cause: String| ScenarioError::Unreadable { place: Place::file(&path.display().to_string()), cause };
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+    let bytes = regrasp_api::read_at_most(path, MAX_BYTES).map_err(|error| match error.kind() {
         ErrorKind::IsADirectory => unreadable("it is a folder; name the file in it".into()),
         _ => unreadable(error.to_string()),
     })?;
