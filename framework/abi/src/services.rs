@@ -8,7 +8,8 @@ use crate::guard::{Guard, caught};
 use regrasp_api::{
     Admissible, Body, BodyPair, CallError, Clearance, ComponentId, Configuration, Context, EdgeId, EdgeKind,
     EdgeView, FingerIndex, FingerJoints, FingerModel, FingerSet, Fingertip, GraphView, Hand, LoneFinger,
-    NodeId, PairDistance, Pose, Reason, Rotation, Task, TipJacobian, TipKinematics, TipRule, Vec3,
+    NodeId, Origin, PairDistance, PastAction, Pose, Reason, Rotation, Task, TipJacobian, TipKinematics,
+    TipRule, Vec3,
 };
 
 /// A service behind a guard: what a plugin from a library is to be handed.
@@ -176,6 +177,18 @@ impl GraphView for GuardedService<'_, dyn GraphView + '_> {
 
     fn start(&self) -> NodeId {
         self.0.start()
+    }
+
+    fn configuration(&self, node: NodeId) -> &Configuration {
+        served("service/graph", || self.0.configuration(node), || self.0.configuration(self.0.start()))
+    }
+
+    fn origin(&self, node: NodeId) -> Origin {
+        served("service/graph", || self.0.origin(node), || Origin::Start)
+    }
+
+    fn history(&self) -> &[PastAction] {
+        self.0.history()
     }
 
     fn goals(&self) -> &[NodeId] {

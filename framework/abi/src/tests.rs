@@ -77,6 +77,15 @@ fn a_call_that_can_fail_fails_with_the_panics_message() {
         fn start(&self) -> NodeId {
             NodeId(0)
         }
+        fn configuration(&self, _: NodeId) -> &Configuration {
+            unreachable!("the strategy panics before it asks")
+        }
+        fn origin(&self, _: NodeId) -> Origin {
+            Origin::Start
+        }
+        fn history(&self) -> &[PastAction] {
+            &[]
+        }
         fn goals(&self) -> &[NodeId] {
             &[]
         }

@@ -39,6 +39,16 @@ impl Tally {
         self.rejections[slot as usize][reason as usize]
     }
 
+    /// What was counted since `earlier`, a copy of these counts.
+    #[must_use]
+    pub fn since(&self, earlier: &Self) -> Self {
+        let mut since = self.clone();
+        since.calls.iter_mut().zip(earlier.calls).for_each(|(now, then)| *now -= then);
+        let then = earlier.rejections.iter().flatten();
+        since.rejections.iter_mut().flatten().zip(then).for_each(|(now, then)| *now -= then);
+        since
+    }
+
     /// Adds the counts of another call.
     pub fn add(&mut self, other: &Self) {
         self.calls.iter_mut().zip(other.calls).for_each(|(a, b)| *a += b);
@@ -111,6 +121,7 @@ mod tests {
         assert_eq!(sum.rejections(Slot::Sampler, Reason::Reach), 2);
         assert_eq!(sum.rejections(Slot::Sampler, Reason::Slip), 0);
         assert_eq!((sum.calls(Slot::Sampler), sum.calls(Slot::Surface)), (2, 0));
+        assert_eq!(sum.since(&context.tally), context.tally);
     }
 
     #[test]

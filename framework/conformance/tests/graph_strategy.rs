@@ -33,7 +33,7 @@ impl GraphStrategy for Liar {
         }
         match self.lie {
             Lie::ExtendsNobody if nodes % 17 == 16 && generated < most && context.random.unit() < 0.5 => {
-                Ok(Action::Extend(NodeId(nodes as u32), Link::None))
+                Ok(Action::Extend(NodeId(nodes as u32), Vicinity::default(), Link::None))
             }
             Lie::NeverAsks if graph.joined() => {
                 Ok(if generated < most { Action::Explore(Link::None) } else { Action::Stop })

@@ -3,56 +3,54 @@
 use crate::meet;
 use crate::search::Search;
 use crate::session::Call;
-use regrasp_api::{CallError, EdgeId, EdgeKind, EdgeVerdict, NodeId};
+use regrasp_api::{CallError, EdgeId, EdgeKind, EdgeVerdict, Effect, NodeId};
 
 impl Search<'_> {
     /// Tries an edge of the given kind between two nodes.
-    pub fn connect(&mut self, a: NodeId, b: NodeId, kind: EdgeKind) -> Result<(), CallError> {
+    pub fn connect(&mut self, a: NodeId, b: NodeId, kind: EdgeKind) -> Result<Effect, CallError> {
         self.state.graph.mark_tried(a, b, kind);
         match kind {
-            EdgeKind::Grasp if !self.same_fingers(a, b) => Ok(()),
+            EdgeKind::Grasp if !self.same_fingers(a, b) => Ok(Effect::Failed),
             EdgeKind::Grasp => self.connect_inside(a, b),
             EdgeKind::TransferRegrasp => self.connect_outside(a, b),
         }
     }
 
     /// By a path in GS_n.
-    fn connect_inside(&mut self, a: NodeId, b: NodeId) -> Result<(), CallError> {
+    fn connect_inside(&mut self, a: NodeId, b: NodeId) -> Result<Effect, CallError> {
         let path = self.grasp_path(a, b);
         self.state.tally.add(&path.tally);
-        if path.result? {
-            self.state.graph.add_edge(a, b, EdgeKind::Grasp, EdgeVerdict::Valid);
+        if !path.result? {
+            return Ok(Effect::Failed);
         }
-        Ok(())
+        self.state.graph.add_edge(a, b, EdgeKind::Grasp, EdgeVerdict::Valid);
+        Ok(Effect::Done)
     }
 
     /// Line 4 of Algorithm 3: by transfers and regrasps.
-    fn connect_outside(&mut self, a: NodeId, b: NodeId) -> Result<(), CallError> {
+    fn connect_outside(&mut self, a: NodeId, b: NodeId) -> Result<Effect, CallError> {
         let (from, to) = (self.state.graph.node(a), self.state.graph.node(b));
         let key = (Call::TransferRegrasp, u64::from(a.0), u64::from(b.0));
         let found = self.session.counted(&self.leg.task, key, |work| meet::connect(work, from, to));
         self.state.tally.add(&found.tally);
-        if let Some(segments) = found.result? {
-            let graph = &mut self.state.graph;
-            let edge = graph.add_edge(a, b, EdgeKind::TransferRegrasp, EdgeVerdict::Executable);
-            graph.set_steps(edge, segments);
-        }
-        Ok(())
+        let Some(segments) = found.result? else { return Ok(Effect::Failed) };
+        let graph = &mut self.state.graph;
+        let edge = graph.add_edge(a, b, EdgeKind::TransferRegrasp, EdgeVerdict::Executable);
+        graph.set_steps(edge, segments);
+        Ok(Effect::Done)
     }
 
     /// Checks an edge that was entered without a check; if it fails it leaves the graph.
-    pub fn check(&mut self, id: EdgeId) -> Result<(), CallError> {
-        let Some(&edge) = self.state.graph.edge(id) else { return Ok(()) };
-        if edge.verdict != EdgeVerdict::Unchecked {
-            return Ok(());
-        }
+    pub fn check(&mut self, id: EdgeId) -> Result<Effect, CallError> {
+        let Some(&edge) = self.state.graph.edge(id) else { return Ok(Effect::Futile) };
         let path = self.grasp_path(edge.from, edge.to);
         self.state.tally.add(&path.tally);
         if path.result? {
             self.state.graph.set_verdict(id, EdgeVerdict::Valid);
+            Ok(Effect::Done)
         } else {
             self.state.graph.remove_edge(id);
+            Ok(Effect::Failed)
         }
-        Ok(())
     }
 }

@@ -2,37 +2,36 @@
 
 use crate::search::{Sample, Search};
 use crate::session::Call;
-use regrasp_api::{CallError, Configuration, EdgeKind, EdgeVerdict, Link, NodeId, PoseRequest};
+use regrasp_api::{
+    CallError, Configuration, EdgeKind, EdgeVerdict, Effect, Link, NodeId, Origin, PoseRequest, Vicinity,
+};
 
 /// After this many more samples another grasp is looked for at a goal that is given by its pose alone.
 const SAMPLES_PER_GOAL: usize = 10;
 
-/// How far from a node's pose its extensions are drawn (m; rad). Our choice.
-const NEAR: (f64, f64) = (0.01, 0.5);
-
 impl Search<'_> {
     /// A new node of GS_n, joined to the components that a path in GS_n reaches.
-    pub fn explore(&mut self, link: Link) -> Result<(), CallError> {
+    pub fn explore(&mut self, link: Link) -> Result<Effect, CallError> {
         if self.state.drawn.is_empty() {
             let first = self.budget.anywhere;
             self.state.drawn = self.session.draw(self.session.threads(), |i| self.anywhere(first + i)).into();
         }
         let sample = self.state.drawn.pop_front().expect("at least one sample was drawn");
         self.budget.anywhere += 1;
-        self.enter(sample, link)
+        self.enter(sample, Origin::Explored, link)
     }
 
     /// A new node near an old one.
-    pub fn extend(&mut self, node: NodeId, link: Link) -> Result<(), CallError> {
+    pub fn extend(&mut self, node: NodeId, within: Vicinity, link: Link) -> Result<Effect, CallError> {
         let configuration = self.state.graph.node(node).clone();
         let key = (Call::Extend, self.leg.number as u64, self.budget.samples as u64);
         let sample = self.session.counted(&self.leg.task, key, |work| {
-            let (radius, angle) = NEAR;
+            let Vicinity { radius, angle } = within;
             let request = PoseRequest::Near { configuration: &configuration, radius, angle };
             let holding = configuration.holding();
             work.plugins.sampler.sample(work.task, request, holding, &mut work.context)
         });
-        self.enter(sample, link)
+        self.enter(sample, Origin::Extended(node), link)
     }
 
     /// The sample with number `k` of this leg.
@@ -45,24 +44,26 @@ impl Search<'_> {
     }
 
     /// Takes a sample into the graph.
-    fn enter(&mut self, sample: Sample, link: Link) -> Result<(), CallError> {
+    fn enter(&mut self, sample: Sample, origin: Origin, link: Link) -> Result<Effect, CallError> {
         self.budget.samples += 1;
         self.state.tally.add(&sample.tally);
-        if let Some(q) = sample.result? {
-            self.add(q, link)?;
-        }
-        self.more_goals()
+        let effect = match sample.result? {
+            Some(q) => self.add(q, origin, link)?,
+            None => Effect::Failed,
+        };
+        self.more_goals()?;
+        Ok(effect)
     }
 
-    fn add(&mut self, q: Configuration, link: Link) -> Result<(), CallError> {
+    fn add(&mut self, q: Configuration, origin: Origin, link: Link) -> Result<Effect, CallError> {
         self.budget.generated += 1;
-        let node = self.state.graph.add_node(q);
+        let node = self.state.graph.add_node(q, origin);
         match link {
             Link::Components => self.link_components(node)?,
             Link::Unchecked(count) => self.link_unchecked(node, count),
             Link::None => {}
         }
-        Ok(())
+        Ok(Effect::Done)
     }
 
     /// Lines 3 to 9 of Algorithm 2: tries the nearest node of each component.
@@ -116,7 +117,7 @@ impl Search<'_> {
         let Some(finder) = &mut self.state.finder else { return Ok(()) };
         let leg = &self.leg;
         if let Some(q) = finder.next(self.session, &leg.task, leg.choices, self.state.tally)? {
-            let node = self.state.graph.add_node(q);
+            let node = self.state.graph.add_node(q, Origin::Goal);
             self.state.goals.push(node);
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use regrasp_api::{
     ComponentId, Configuration, Contact, EdgeId, EdgeKind, EdgeVerdict, EdgeView, FingerIndex, NodeId,
-    angle_between,
+    Origin, angle_between,
 };
 use regrasp_plan::Segment;
 use std::collections::{BTreeMap, HashSet};
@@ -10,6 +10,8 @@ use std::collections::{BTreeMap, HashSet};
 /// The graph of one run; it grows from leg to leg.
 pub(crate) struct Graph {
     nodes: Vec<Configuration>,
+    /// Where each node comes from.
+    origins: Vec<Origin>,
     edges: Vec<EdgeView>,
     /// What executes an edge, from its `from` to its `to`.
     steps: BTreeMap<EdgeId, Vec<Segment>>,
@@ -26,6 +28,7 @@ impl Graph {
     pub fn new(turn_length: f64) -> Self {
         Self {
             nodes: Vec::new(),
+            origins: Vec::new(),
             edges: Vec::new(),
             steps: BTreeMap::new(),
             next_edge: 0,
@@ -37,9 +40,10 @@ impl Graph {
     }
 
     /// Adds a node as a component of its own.
-    pub fn add_node(&mut self, q: Configuration) -> NodeId {
+    pub fn add_node(&mut self, q: Configuration, origin: Origin) -> NodeId {
         let node = NodeId(self.nodes.len() as u32);
         self.nodes.push(q);
+        self.origins.push(origin);
         self.component.push(ComponentId(node.0));
         self.components.push(ComponentId(node.0));
         node
@@ -58,6 +62,11 @@ impl Graph {
     /// The numbers of all nodes.
     pub fn ids(&self) -> impl Iterator<Item = NodeId> + use<> {
         (0..self.nodes.len() as u32).map(NodeId)
+    }
+
+    /// Where a node comes from.
+    pub fn origin(&self, node: NodeId) -> Origin {
+        self.origins[node.0 as usize]
     }
 
     /// How many nodes.
@@ -134,6 +143,11 @@ impl Graph {
         &self.edges
     }
 
+    /// The number of the edge that is added next.
+    pub fn next_edge(&self) -> EdgeId {
+        EdgeId(self.next_edge)
+    }
+
     /// The component of a node.
     pub fn component(&self, node: NodeId) -> ComponentId {
         self.component[node.0 as usize]
@@ -188,7 +202,7 @@ mod tests {
     fn chain(count: u32) -> (Graph, Vec<EdgeId>) {
         let mut graph = Graph::new(0.03);
         for i in 0..count {
-            graph.add_node(at(f64::from(i)));
+            graph.add_node(at(f64::from(i)), Origin::Explored);
         }
         let join = |i| graph.add_edge(NodeId(i), NodeId(i + 1), EdgeKind::Grasp, EdgeVerdict::Valid);
         let edges = (0..count - 1).map(join).collect();

@@ -17,6 +17,7 @@ mod error;
 mod explore;
 mod foresight;
 mod graph;
+mod history;
 mod meet;
 mod order;
 mod query;

@@ -98,17 +98,18 @@ impl std::fmt::Debug for GraphRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use regrasp_api::{PerFinger, Pose};
+    use regrasp_api::{Origin, PerFinger, Pose};
 
     #[test]
     fn edges_are_failed_kept_or_used() {
         let mut graph = Graph::new(0.03);
         for i in 0..4 {
-            graph.add_node(Configuration {
+            let q = Configuration {
                 X_HO: Pose::translation(f64::from(i), 0.0, 0.0),
                 joints: PerFinger::filled(1, Default::default()),
                 contacts: PerFinger::filled(1, None),
-            });
+            };
+            graph.add_node(q, Origin::Explored);
         }
         let join = |graph: &mut Graph, a, b| {
             graph.add_edge(NodeId(a), NodeId(b), EdgeKind::Grasp, EdgeVerdict::Valid)

@@ -11,7 +11,7 @@ use crate::search::{Budget, Leg, Search, State};
 use crate::session::{Call, Session};
 use crate::smooth::Smoother;
 use regrasp_api::{
-    CallError, Configuration, EdgeId, FingerGrasp, FingerSet, NodeId, Pose, Tally, Task, unless_fault,
+    CallError, Configuration, EdgeId, FingerGrasp, FingerSet, NodeId, Origin, Pose, Tally, Task, unless_fault,
 };
 use regrasp_plan::{Motion, Segment, Statistics, TimingLimits, assign_times, plugin_statistics};
 use std::collections::BTreeSet;
@@ -117,6 +117,8 @@ impl Run<'_> {
                 finder,
                 drawn: Default::default(),
                 tally: &mut self.tally,
+                history: Vec::new(),
+                warnings: &mut self.warnings,
                 used: Vec::new(),
             },
             budget: Budget { most: self.request.problem.limits.budget.max_nodes, ..Default::default() },
@@ -134,14 +136,14 @@ impl Run<'_> {
         end: End,
         grasp: Option<&[FingerGrasp]>,
     ) -> Result<(Vec<NodeId>, Option<Finder>), Halt> {
-        let (kind, place, count) = match end {
-            End::Start => (Call::Start, 0, FIRST_STARTS),
-            End::Goal(index) => (Call::Goal, index + 1, FIRST_GOALS),
+        let (kind, place, count, origin) = match end {
+            End::Start => (Call::Start, 0, FIRST_STARTS, Origin::Start),
+            End::Goal(index) => (Call::Goal, index + 1, FIRST_GOALS, Origin::Goal),
         };
         let X_HO = self.poses[place];
         if let Some(grasp) = grasp {
             let q = self.given(end, X_HO, grasp)?;
-            return Ok((vec![self.graph.add_node(q)], None));
+            return Ok((vec![self.graph.add_node(q, origin)], None));
         }
         let leg = place.saturating_sub(1) as u64;
         let mut finder = Finder { kind, leg, X_HO, calls: 0 };
@@ -151,7 +153,7 @@ impl Run<'_> {
         }
         endpoints::sort_by_ease(&self.task, &mut found, neighbours(self.poses, place));
         found.truncate(if end == End::Start { 1 } else { count });
-        let nodes = found.into_iter().map(|q| self.graph.add_node(q)).collect();
+        let nodes = found.into_iter().map(|q| self.graph.add_node(q, origin)).collect();
         Ok((nodes, Some(finder)))
     }
 

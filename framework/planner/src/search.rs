@@ -5,11 +5,13 @@
 
 use crate::endpoints::Finder;
 use crate::graph::Graph;
+use crate::history::Before;
 use crate::session::{Call, Counted, Session};
 use crate::view::LegView;
 use regrasp_abi::GuardedService;
 use regrasp_api::{
-    Action, CallError, Configuration, EdgeId, FingerSet, GraphView, NodeId, Slot, Tally, Target, Task,
+    Action, CallError, Configuration, EdgeId, EdgeVerdict, Effect, FingerSet, GraphView, NodeId, PastAction,
+    Slot, Tally, Target, Task, Vicinity,
 };
 use regrasp_plan::Segment;
 use std::collections::VecDeque;
@@ -39,6 +41,10 @@ pub(crate) struct State<'a> {
     pub drawn: VecDeque<Sample>,
     /// What the calls counted that were consumed.
     pub tally: &'a mut Tally,
+    /// What was done on this leg.
+    pub history: Vec<PastAction>,
+    /// What the user should know.
+    pub warnings: &'a mut Vec<String>,
     /// The edges of the way that was found.
     pub used: Vec<EdgeId>,
 }
@@ -55,6 +61,8 @@ pub(crate) struct Budget {
     pub anywhere: usize,
     /// Nodes that samples gave.
     pub generated: usize,
+    /// Actions that could change nothing.
+    pub futile: usize,
 }
 
 /// The search of one leg.
@@ -76,30 +84,80 @@ impl Search<'_> {
             self.session.proceed()?;
             let graph = &self.state.graph;
             self.progress.search(self.leg.number, graph.node_count(), graph.components().len());
-            match self.decide(step)? {
-                Action::Explore(link) => self.explore(link)?,
-                Action::Extend(node, link) => self.extend(node, link)?,
-                Action::Connect(a, b, kind) => self.connect(a, b, kind)?,
-                Action::Check(edge) => self.check(edge)?,
-                Action::Query => {
-                    if let Some(segments) = self.query()? {
-                        return Ok(Some(segments));
-                    }
-                }
-                Action::Stop => return Ok(None),
-                unknown => return Err(contract(format!("{unknown:?}, which this planner does not know"))),
+            let action = self.decide(step)?;
+            if self.is_over(action) {
+                return Ok(None);
             }
+            let before = Before::of(self.state.graph, self.state.tally);
+            let (effect, found) = self.act(action)?;
+            if found.is_some() {
+                return Ok(found);
+            }
+            self.budget.futile += usize::from(effect == Effect::Futile);
+            let past = before.past(self.state.graph, self.state.tally, action, effect);
+            self.state.history.push(past);
         }
         Ok(None)
     }
 
-    fn decide(&mut self, step: u64) -> Result<Action, CallError> {
-        let view = LegView {
+    /// Whether the search ends before this action: the strategy gives up, or its budget is spent.
+    fn is_over(&mut self, action: Action) -> bool {
+        let Budget { most, samples, futile, .. } = self.budget;
+        let why = match action {
+            Action::Stop => return true,
+            Action::Explore(_) | Action::Extend(..) if samples >= most => {
+                format!("it goes on sampling after {most} samples, the budget of nodes")
+            }
+            _ if futile > most => format!("{futile} of its actions could change nothing, at last {action:?}"),
+            _ => return false,
+        };
+        let goal = self.leg.number;
+        self.state.warnings.push(format!("the graph strategy was stopped on the way to `goal[{goal}]`: {why}"));
+        true
+    }
+
+    /// Does what the strategy wants; the segments of the way where a query found one.
+    fn act(&mut self, action: Action) -> Result<(Effect, Option<Vec<Segment>>), CallError> {
+        if self.is_futile(action) {
+            return Ok((Effect::Futile, None));
+        }
+        let effect = match action {
+            Action::Explore(link) => self.explore(link)?,
+            Action::Extend(node, within, link) => self.extend(node, within, link)?,
+            Action::Connect(a, b, kind) => self.connect(a, b, kind)?,
+            Action::Check(edge) => self.check(edge)?,
+            Action::Query => {
+                let found = self.query()?;
+                return Ok((if found.is_some() { Effect::Done } else { Effect::Failed }, found));
+            }
+            unknown => return Err(contract(format!("{unknown:?}, which this planner does not know"))),
+        };
+        Ok((effect, None))
+    }
+
+    /// Whether an action can change nothing: the same call gives the same answer for ever.
+    fn is_futile(&self, action: Action) -> bool {
+        let graph = &self.state.graph;
+        match action {
+            Action::Connect(a, b, kind) => graph.was_tried(a, b, kind),
+            Action::Check(id) => graph.edge(id).is_none_or(|edge| edge.verdict != EdgeVerdict::Unchecked),
+            Action::Query => !self.view().joined(),
+            _ => false,
+        }
+    }
+
+    fn view(&self) -> LegView<'_> {
+        LegView {
             graph: self.state.graph,
             start: self.leg.start,
             goals: &self.state.goals,
             generated: (self.budget.samples, self.budget.most),
-        };
+            history: &self.state.history,
+        }
+    }
+
+    fn decide(&mut self, step: u64) -> Result<Action, CallError> {
+        let view = self.view();
         let view = GuardedService(&view as &dyn GraphView);
         let key = (Call::Strategy, self.leg.number as u64, step);
         let decided = self
@@ -114,7 +172,10 @@ impl Search<'_> {
         let nodes = self.state.graph.node_count();
         let known = |node: NodeId| (node.0 as usize) < nodes;
         let sound = match action {
-            Action::Extend(node, _) => known(node),
+            Action::Extend(node, Vicinity { radius, angle }, _) => {
+                let sound = |size: f64| size.is_finite() && size > 0.0;
+                known(node) && sound(radius) && sound(angle)
+            }
             Action::Connect(a, b, _) => known(a) && known(b) && a != b,
             _ => true,
         };

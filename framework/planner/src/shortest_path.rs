@@ -82,7 +82,7 @@ fn trace(came_by: &[Option<(NodeId, Step)>], goal: NodeId) -> Vec<Step> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use regrasp_api::{Configuration, EdgeKind, EdgeVerdict, PerFinger, Pose, Random};
+    use regrasp_api::{Configuration, EdgeKind, EdgeVerdict, Origin, PerFinger, Pose, Random};
 
     fn random_graph(random: &mut Random) -> Graph {
         let mut graph = Graph::new(0.03);
@@ -90,7 +90,8 @@ mod tests {
         for _ in 0..12 {
             let p = random.direction() * random.unit();
             let joints = PerFinger::filled(1, Default::default());
-            graph.add_node(Configuration { X_HO: Pose::translation(p.x, p.y, p.z), joints, contacts: none });
+            let X_HO = Pose::translation(p.x, p.y, p.z);
+            graph.add_node(Configuration { X_HO, joints, contacts: none }, Origin::Explored);
         }
         for _ in 0..16 {
             let (a, b) = (NodeId(random.index(12) as u32), NodeId(random.index(12) as u32));

@@ -2,7 +2,9 @@
 
 use crate::graph::Graph;
 use crate::shortest_path::shortest_path;
-use regrasp_api::{ComponentId, EdgeId, EdgeKind, EdgeView, GraphView, NodeId};
+use regrasp_api::{
+    ComponentId, Configuration, EdgeId, EdgeKind, EdgeView, GraphView, NodeId, Origin, PastAction,
+};
 
 /// The graph as the strategy of one leg sees it.
 pub(crate) struct LegView<'a> {
@@ -10,6 +12,7 @@ pub(crate) struct LegView<'a> {
     pub start: NodeId,
     pub goals: &'a [NodeId],
     pub generated: (usize, usize),
+    pub history: &'a [PastAction],
 }
 
 impl GraphView for LegView<'_> {
@@ -21,6 +24,15 @@ impl GraphView for LegView<'_> {
     }
     fn start(&self) -> NodeId {
         self.start
+    }
+    fn configuration(&self, node: NodeId) -> &Configuration {
+        self.graph.node(node)
+    }
+    fn origin(&self, node: NodeId) -> Origin {
+        self.graph.origin(node)
+    }
+    fn history(&self) -> &[PastAction] {
+        self.history
     }
     fn goals(&self) -> &[NodeId] {
         self.goals

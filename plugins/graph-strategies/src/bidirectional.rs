@@ -17,7 +17,7 @@
 use crate::nearest::{ends, nearest_in, nodes};
 use regrasp_api::{
     Action, Build, CallError, ComponentId, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, NodeId,
-    Settings, SettingsError, Slot, check_range, check_settings, inventory,
+    Settings, SettingsError, Slot, Vicinity, check_range, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -93,7 +93,7 @@ impl GraphStrategy for Bidirectional {
         if graph.goals().is_empty() || context.random.unit() < self.settings.anywhere {
             return Ok(Action::Explore(Link::Components));
         }
-        Ok(Action::Extend(self.node_to_extend(graph, context), Link::Components))
+        Ok(Action::Extend(self.node_to_extend(graph, context), Vicinity::default(), Link::Components))
     }
 }
 

@@ -199,7 +199,7 @@ fn bidirectional_extends_its_trees_in_turn() {
     for key in 0..10 {
         run(&strategy, Weather { joins: 0.05, ..FAIR }, key, |graph, action| {
             assert!(!matches!(action, Action::Explore(_)));
-            let Action::Extend(node, link) = action else { return };
+            let Action::Extend(node, _, link) = action else { return };
             assert_eq!(link, Link::Components);
             let in_start = |node: NodeId| graph.component(node) == graph.component(graph.start());
             let in_goals = |node: NodeId| {

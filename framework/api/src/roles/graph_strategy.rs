@@ -1,6 +1,6 @@
 //! Role 6: what to do next with the manipulation graph.
 
-use crate::{CallError, Context};
+use crate::{CallError, Configuration, Context, Tally};
 
 /// A node of the manipulation graph, counted from 0 in the order of creation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -60,14 +60,30 @@ pub enum Link {
     None,
 }
 
+/// How far from a node another one is sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vicinity {
+    /// Largest displacement of the object (m), above 0.
+    pub radius: f64,
+    /// Largest turn of the object (rad), above 0.
+    pub angle: f64,
+}
+
+impl Default for Vicinity {
+    /// 10 mm and half a radian: about as far as one transfer goes.
+    fn default() -> Self {
+        Self { radius: 0.01, angle: 0.5 }
+    }
+}
+
 /// What the planner does next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Action {
     /// Sample a node anywhere in GS_n, and join it.
     Explore(Link),
-    /// Sample a node near the given one, and join it.
-    Extend(NodeId, Link),
+    /// Sample a node near the given one, with the same fingers holding, and join it.
+    Extend(NodeId, Vicinity, Link),
     /// Try an edge of the given kind between two nodes.
     Connect(NodeId, NodeId, EdgeKind),
     /// Check an unchecked edge; if it fails it leaves the graph.
@@ -78,7 +94,49 @@ pub enum Action {
     Stop,
 }
 
-/// The graph as a strategy sees it; its only memory.
+/// Where a node comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Origin {
+    /// It is the start of the problem.
+    Start,
+    /// It is a grasp at the pose of a goal.
+    Goal,
+    /// [`Action::Explore`] made it.
+    Explored,
+    /// [`Action::Extend`] made it, near this node.
+    Extended(NodeId),
+}
+
+/// What an action came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Effect {
+    /// It did what it was to do: a node was made, an edge was entered, an edge passed its check.
+    Done,
+    /// It was tried and failed: no sample, no path, an edge that left the graph.
+    Failed,
+    /// It could change nothing, and nothing was tried: a pair tried before, an edge checked before or gone, a query while start and goal
+    /// lie apart.
+    Futile,
+}
+
+/// An action of the past, and what it came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PastAction {
+    /// What the strategy wanted.
+    pub action: Action,
+    /// What it came to.
+    pub effect: Effect,
+    /// The nodes that it made, in ascending order; a sample may bring another grasp at the goal with it.
+    pub nodes: Vec<NodeId>,
+    /// The edges that it entered, in ascending order.
+    pub edges: Vec<EdgeId>,
+    /// By how many components fewer its edges left.
+    pub merges: usize,
+    /// The calls that it took and what they were refused for, by slot: what the action cost.
+    pub tally: Tally,
+}
+
+/// The graph as a strategy sees it, and what was done so far; its only memory.
 pub trait GraphView {
     /// Nodes in the graph; their ids are `0..node_count()`.
     fn node_count(&self) -> usize;
@@ -88,6 +146,12 @@ pub trait GraphView {
     fn start(&self) -> NodeId;
     /// The goal's nodes, one for each grasp that was found at the goal's pose.
     fn goals(&self) -> &[NodeId];
+    /// The configuration of a node: the object's pose, the joints, which fingers hold where.
+    fn configuration(&self, node: NodeId) -> &Configuration;
+    /// Where a node comes from.
+    fn origin(&self, node: NodeId) -> Origin;
+    /// What was done since this goal was begun with, first to last, each action with what it came to.
+    fn history(&self) -> &[PastAction];
     /// The component of a node, unchecked edges included.
     fn component(&self, node: NodeId) -> ComponentId;
     /// The components in ascending order.
@@ -106,7 +170,11 @@ pub trait GraphView {
 
 /// Decides what to do next, given a view of the graph.
 ///
-/// Pure in the view and the context's random stream: it has no other memory.
+/// Pure in the view and the context's random stream: it has no other memory. What it wants to learn from, it finds in
+/// [`GraphView::history`].
+///
+/// The search ends without a plan at [`Action::Stop`], at a sample beyond the budget of nodes, and after as many actions with
+/// [`Effect::Futile`] as there may be nodes.
 pub trait GraphStrategy: Send + Sync {
     /// The next action.
     fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError>;

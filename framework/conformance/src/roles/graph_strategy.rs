@@ -128,24 +128,12 @@ fn goes_on(subject: &Subject<'_>) -> Finding {
     Ok(())
 }
 
-/// Whether an action can change nothing: tried before, or asked for in vain.
-fn is_futile(graph: &SquareGraph, action: Action) -> bool {
-    match action {
-        Action::Connect(a, b, kind) => {
-            let there = |node: regrasp_api::NodeId| (node.0 as usize) < graph.node_count();
-            there(a) && there(b) && graph.attempted(a, b, kind)
-        }
-        Action::Query => !graph.joined(),
-        _ => false,
-    }
-}
-
 fn not_futile(subject: &Subject<'_>) -> Finding {
     let strategy = build(subject)?;
     for (key, weather) in [(1, BARREN), (2, FAIR), (3, BARREN)] {
         let (mut graph, mut futile) = (SquareGraph::new(weather, key), 0);
         run(&*strategy, &mut graph, key, |graph, action| {
-            futile = if is_futile(graph, action) { futile + 1 } else { 0 };
+            futile = if graph.is_futile(action) { futile + 1 } else { 0 };
             ensure(futile <= PATIENCE, || format!("{futile} times in a row to no effect: {action:?}"))
         })?;
     }
