@@ -42,10 +42,11 @@ struct Doubtful {
 }
 
 impl Doubtful {
-    /// The same grasp with narrower cones; cones of another kind are left for the exact test to refuse.
+    /// The same grasp with narrower cones; polyhedral ones are left as they are.
     fn doubted<'a>(&self, grasp: &Grasp<'a>) -> Grasp<'a> {
         let mut doubted = Grasp::new(grasp.g_O);
-        for &(mut contact) in grasp.contacts() {
+        for contact in grasp.contacts() {
+            let mut contact = contact.clone();
             if let Cone::Elliptic { mu, gamma } = &mut contact.cone {
                 (*mu, *gamma) = (*mu * self.share, *gamma * self.share);
             }

@@ -81,6 +81,13 @@ pub struct PlanArgs {
     /// The same with the manipulation graph: what was tried, failed, found and used; also where there is no plan.
     #[arg(long)]
     pub view_graph: bool,
+    /// Hold every call of a plugin against the laws of its role; the first breach ends the run and names plugin, law and call. The run takes
+    /// about three times as long. Always on where a debug build of this program loads libraries.
+    #[arg(long)]
+    pub audit: bool,
+    /// Audit, and write what broke a law to this file: the call with its input, and the whole problem.
+    #[arg(long, value_name = "FILE")]
+    pub audit_save: Option<PathBuf>,
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub json: bool,

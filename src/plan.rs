@@ -23,9 +23,13 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     let line = Line::new();
     let (seed, threads) = (args.seed, usize::from(args.threads));
     let options = RunOptions { seed, threads, stop: &watch, clock: &watch, progress: &line };
-    let ran = setup.run(&options);
+    let ran = if is_audited(args) {
+        audited(args, &setup, &options)
+    } else {
+        setup.run(&options).map_err(Failure::bad_input)
+    };
     line.finish();
-    let ran = ran.map_err(Failure::bad_input)?;
+    let ran = ran?;
     let saved = save(args.output.as_deref(), &ran)?;
     if let Some(path) = &args.grasps {
         let count = grasps::save(path, &scenario, &setup, &ran)?;
@@ -51,6 +55,27 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     }
     view::show_run(args, &setup, &ran, saved.as_deref())?;
     ending(&ran, &summary)
+}
+
+/// Whether the run is under audit: on demand, and where a debug build tries plugins from libraries.
+fn is_audited(args: &PlanArgs) -> bool {
+    let tries_plugins = cfg!(debug_assertions) && !args.libraries.load.is_empty();
+    args.audit || args.audit_save.is_some() || tries_plugins
+}
+
+/// A run under audit; what broke a law is kept where that was asked for.
+fn audited(args: &PlanArgs, setup: &Setup<'_>, options: &RunOptions<'_>) -> Result<Run, Failure> {
+    let (ran, case) = setup.run_audited(options);
+    let saved = match (&args.audit_save, case) {
+        (Some(path), Some(case)) => {
+            let text = format!("{:#}\n", case.file);
+            std::fs::write(path, text)
+                .map_err(|error| Failure::bad_input(format!("`{}`: {error}", path.display())))?;
+            format!("; the call is kept in {}", path.display())
+        }
+        _ => String::new(),
+    };
+    ran.map_err(|error| Failure::bad_input(format!("{error}{saved}")))
 }
 
 /// Tells on standard error what was chosen while the scenario was read.

@@ -18,7 +18,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-planner", &["regrasp-abi", "regrasp-api", "regrasp-plan"]),
     ("regrasp-verify", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
     ("regrasp-view", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
-    ("regrasp-conformance", &["regrasp-api", "regrasp-world"]),
+    ("regrasp-audit", &["regrasp-api"]),
+    ("regrasp-conformance", &["regrasp-api", "regrasp-audit", "regrasp-world"]),
     ("regrasp-export", &["regrasp-api", "regrasp-physics", "regrasp-plan", "regrasp-world"]),
     ("regrasp-physics", &["regrasp-api", "regrasp-world"]),
     (

@@ -20,12 +20,12 @@ macro_rules! guardable {
 guardable!(ContactModel, StabilityTest, SurfaceParam, ClosedChainSampler, LocalPlanner, GraphStrategy);
 
 impl ContactModel for Guard<dyn ContactModel> {
-    fn cone(&self, contact: &Contact, mu: f64) -> Cone<'_> {
-        self.value(|model| model.cone(contact, mu), || Cone::Elliptic { mu: 0.0, gamma: 0.0 })
+    fn cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
+        self.value(|model| model.cone(finger, contact, mu), || Cone::FRICTIONLESS)
     }
 
-    fn spinning_cone(&self, contact: &Contact, mu: f64) -> Cone<'_> {
-        self.value(|model| model.spinning_cone(contact, mu), || Cone::Elliptic { mu: 0.0, gamma: 0.0 })
+    fn spinning_cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
+        self.value(|model| model.spinning_cone(finger, contact, mu), || Cone::FRICTIONLESS)
     }
 
     fn fewest_contacts(&self) -> usize {

@@ -6,7 +6,7 @@ use regrasp_api::*;
 struct Panics;
 
 impl ContactModel for Panics {
-    fn cone(&self, _: &Contact, _: f64) -> Cone<'_> {
+    fn cone(&self, _: FingerIndex, _: &Contact, _: f64) -> Cone<'_> {
         panic!("no cone")
     }
 
@@ -55,7 +55,7 @@ fn a_value_after_a_panic_is_harmless_and_the_fault_ends_the_call() {
     let model = guarded::<dyn ContactModel>("contact-model/broken", || Ok(Box::new(Panics))).unwrap();
     assert_eq!(model.fewest_contacts(), 3);
     assert_eq!(take_fault(), None);
-    assert_eq!(model.cone(&CONTACT, 0.5), Cone::Elliptic { mu: 0.0, gamma: 0.0 });
+    assert_eq!(model.cone(FingerIndex(0), &CONTACT, 0.5), Cone::Elliptic { mu: 0.0, gamma: 0.0 });
     let context = Context::new(Random::from_key(0, 0, 0, 0), &Uninterrupted);
     assert_eq!(context.proceed(), Err(panicked("no cone")));
     assert_eq!(unless_fault(Ok(())), Err(panicked("no cone")));
@@ -139,7 +139,7 @@ fn every_function_of_an_entry_is_guarded() {
     let error = build("{}", &parts).err().unwrap();
     assert!(error.to_string().contains("`contact-model/broken` panicked: no build"), "{error}");
     let model = build("", &parts).unwrap();
-    model.cone(&CONTACT, 0.5);
+    model.cone(FingerIndex(0), &CONTACT, 0.5);
     assert_eq!(take_fault(), Some(panicked("no cone")));
 }
 

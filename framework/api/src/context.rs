@@ -79,6 +79,12 @@ impl<'a> Context<'a> {
         Self { random, tally: Tally::default(), interrupt }
     }
 
+    /// A context of its own with the same random stream and interrupt, and empty counts: for a call that is to be made as if this were its.
+    #[must_use]
+    pub fn twin(&self) -> Self {
+        Self::new(self.random.clone(), self.interrupt)
+    }
+
     /// Ends the call with [`CallError::Interrupted`] where the run should stop, or with the panic of a plugin that this call asked for a
     /// value and that could not return it as an error. Call it once per step of a long loop.
     pub fn proceed(&self) -> Result<(), CallError> {

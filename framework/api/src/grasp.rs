@@ -1,11 +1,12 @@
 //! Grasps as the stability tests see them: contacts with the cones of wrenches that they can transmit.
 
-use crate::{FingerIndex, MAX_FINGERS, Vec3};
+use crate::{FingerIndex, MAX_FINGERS, Vec3, any_orthogonal};
+use std::borrow::Cow;
 
 /// The wrenches that one contact can transmit, per unit of normal force.
 ///
 /// Forces act *on the object*, along the inward normal; torques about the contact point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Cone<'a> {
     /// |f_t|²/μ² + m²/γ² ≤ f_n²: Coulomb friction with coefficient `mu` ≥ 0 and, where the torsional radius `gamma` ≥ 0
     /// (m) is positive, a torque m about the normal. `gamma = 0` is a point contact with friction, `mu = gamma = 0` a
@@ -16,11 +17,68 @@ pub enum Cone<'a> {
         /// Torsional friction radius (m).
         gamma: f64,
     },
-    /// The cone spanned by edges in the contact frame, each with unit normal component.
-    Polyhedral(&'a [ConeEdge]),
+    /// The cone spanned by edges in the contact frame, each with unit normal component: lent by the model that has them ready, or made
+    /// for this contact (`Cone::Polyhedral(edges.into())`).
+    Polyhedral(Cow<'a, [ConeEdge]>),
 }
 
 impl Cone<'_> {
+    /// A frictionless contact: a force along the normal and nothing else.
+    pub const FRICTIONLESS: Cone<'static> = Cone::Elliptic { mu: 0.0, gamma: 0.0 };
+
+    /// A cone of two coefficients of friction, for contacts with a grain: `mu[0]` along the tangential part of `grain_O` (a vector in O,
+    /// of any length), `mu[1]` across it, and the torsional radius `gamma` (m), for the *outward* unit normal `n_O`.
+    ///
+    /// It is the polyhedron of [`GRAIN_EDGES`] edges inscribed in the elliptic cone, in each of five planes of torsion where `gamma` is
+    /// positive: nowhere wider, and at most 2 % narrower without torsion, 10 % with it. A grain along the normal has no direction: then
+    /// the smaller coefficient counts all round.
+    pub fn grained(n_O: &Vec3, grain_O: &Vec3, mu: [f64; 2], gamma: f64) -> Cone<'static> {
+        let inward = -n_O;
+        let [t1, t2] = tangents(&inward);
+        let (x, y) = (grain_O.dot(&t1), grain_O.dot(&t2));
+        let length = x.hypot(y);
+        let least = mu[0].min(mu[1]);
+        let (grain, mu) =
+            if length > 1e-9 { ([x / length, y / length], mu) } else { ([1.0, 0.0], [least; 2]) };
+        let mut edges = Vec::new();
+        let levels: std::ops::RangeInclusive<i32> = if gamma > 0.0 { -2..=2 } else { 0..=0 };
+        for level in levels {
+            let (sin, cos) = (f64::from(level) * std::f64::consts::FRAC_PI_4).sin_cos();
+            let corners = if level.abs() == 2 { 1 } else { GRAIN_EDGES };
+            edges.extend((0..corners).map(|k| {
+                let (b, a) = (std::f64::consts::TAU * k as f64 / GRAIN_EDGES as f64).sin_cos();
+                let (along, across) = (cos * mu[0] * a, cos * mu[1] * b);
+                let tangential = [grain[0] * along - grain[1] * across, grain[1] * along + grain[0] * across];
+                ConeEdge { tangential, torsion: gamma * sin }
+            }));
+        }
+        Cone::Polyhedral(edges.into())
+    }
+
+    /// The wrenches of the cone that have no torque about the normal: what a contact transmits while it may spin.
+    ///
+    /// Exact: the slice of a polyhedral cone is spanned where segments between its edges cross torsion zero.
+    #[must_use]
+    pub fn without_torsion(&self) -> Cone<'static> {
+        match self {
+            Self::Elliptic { mu, .. } => Cone::Elliptic { mu: *mu, gamma: 0.0 },
+            Self::Polyhedral(edges) => {
+                let flat = edges.iter().filter(|edge| edge.torsion == 0.0).copied();
+                let (above, below) = (side(edges, 1.0), side(edges, -1.0));
+                let between = above.iter().flat_map(|a| below.iter().map(move |b| crossing(a, b)));
+                Cone::Polyhedral(flat.chain(between).collect::<Vec<_>>().into())
+            }
+        }
+    }
+
+    /// The same cone, with edges of its own.
+    pub fn into_owned(self) -> Cone<'static> {
+        match self {
+            Self::Elliptic { mu, gamma } => Cone::Elliptic { mu, gamma },
+            Self::Polyhedral(edges) => Cone::Polyhedral(edges.into_owned().into()),
+        }
+    }
+
     /// Whether the contact can transmit a torque about its normal.
     pub fn carries_torsion(&self) -> bool {
         match self {
@@ -30,9 +88,28 @@ impl Cone<'_> {
     }
 }
 
-/// One edge of a polyhedral cone at unit normal force.
-///
-/// The tangents are `t1 = any_orthogonal(n)` and `t2 = n × t1` with n the contact's *inward* normal.
+/// How many edges [`Cone::grained`] has in a plane.
+pub const GRAIN_EDGES: usize = 16;
+
+/// The tangents that edges of polyhedral cones are given along, for the *inward* unit normal `n`: t1 = [`any_orthogonal`]`(n)`, t2 = n × t1.
+pub fn tangents(n: &Vec3) -> [Vec3; 2] {
+    let t1 = any_orthogonal(n);
+    [t1, n.cross(&t1)]
+}
+
+/// The edges whose torsion has this sign.
+fn side(edges: &[ConeEdge], sign: f64) -> Vec<&ConeEdge> {
+    edges.iter().filter(|edge| edge.torsion * sign > 0.0).collect()
+}
+
+/// Where the segment between two edges has no torsion.
+fn crossing(above: &ConeEdge, below: &ConeEdge) -> ConeEdge {
+    let s = above.torsion / (above.torsion - below.torsion);
+    let at = |i: usize| above.tangential[i] + (below.tangential[i] - above.tangential[i]) * s;
+    ConeEdge { tangential: [at(0), at(1)], torsion: 0.0 }
+}
+
+/// One edge of a polyhedral cone at unit normal force; see [`tangents`] for its axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConeEdge {
     /// Tangential force along t1 and t2, no unit.
@@ -42,7 +119,7 @@ pub struct ConeEdge {
 }
 
 /// One contact of a grasp, with its cone.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct GraspContact<'a> {
     /// The finger that touches.
     pub finger: FingerIndex,
@@ -55,7 +132,7 @@ pub struct GraspContact<'a> {
 }
 
 /// A grasp: the contacts that hold the object, and the load on it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Grasp<'a> {
     contacts: [GraspContact<'a>; MAX_FINGERS],
     count: u8,
@@ -66,13 +143,13 @@ pub struct Grasp<'a> {
 impl<'a> Grasp<'a> {
     /// A grasp without contacts under the gravity `g_O` (m/s², in the object's frame).
     pub fn new(g_O: Vec3) -> Self {
-        let nothing = GraspContact {
+        const NOTHING: GraspContact<'static> = GraspContact {
             finger: FingerIndex(0),
-            p_OC: Vec3::zeros(),
-            n_O: Vec3::z(),
-            cone: Cone::Elliptic { mu: 0.0, gamma: 0.0 },
+            p_OC: Vec3::new(0.0, 0.0, 0.0),
+            n_O: Vec3::new(0.0, 0.0, 1.0),
+            cone: Cone::FRICTIONLESS,
         };
-        Self { contacts: [nothing; MAX_FINGERS], count: 0, g_O }
+        Self { contacts: [const { NOTHING }; MAX_FINGERS], count: 0, g_O }
     }
 
     /// Adds a contact; at most [`MAX_FINGERS`].
@@ -93,7 +170,7 @@ impl<'a> Grasp<'a> {
         self.contacts()
             .iter()
             .filter(|contact| contact.finger != finger)
-            .for_each(|&contact| rest.push(contact));
+            .for_each(|contact| rest.push(contact.clone()));
         rest
     }
 }
@@ -107,4 +184,58 @@ pub struct Hint {
     pub tag: u64,
     /// The plugin's numbers, in the plugin's units.
     pub values: [f64; 8],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest value over the slice at unit normal force of the product with (x, y, torsion).
+    fn support(cone: &Cone<'_>, w: [f64; 3]) -> f64 {
+        let Cone::Polyhedral(edges) = cone else { panic!("it is polyhedral") };
+        let value =
+            |edge: &ConeEdge| edge.tangential[0] * w[0] + edge.tangential[1] * w[1] + edge.torsion * w[2];
+        edges.iter().map(value).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    #[test]
+    fn a_grain_has_its_coefficients_along_and_across_in_every_frame() {
+        let (n_O, grain_O) = (Vec3::new(0.36, 0.48, 0.8), Vec3::new(0.3, -2.0, 1.0));
+        let cone = Cone::grained(&n_O, &grain_O, [0.9, 0.3], 0.0);
+        let [t1, t2] = tangents(&-n_O);
+        let along = (grain_O - n_O * n_O.dot(&grain_O)).normalize();
+        let across = n_O.cross(&along);
+        for (direction, mu) in [(along, 0.9), (-along, 0.9), (across, 0.3), (-across, 0.3)] {
+            let reach = support(&cone, [direction.dot(&t1), direction.dot(&t2), 0.0]);
+            assert!((reach - mu).abs() < 1e-12, "{reach} for {mu}");
+        }
+        let lost = Cone::grained(&n_O, &n_O, [0.9, 0.3], 0.0);
+        assert!((support(&lost, [1.0, 0.0, 0.0]) - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_spins_is_the_slice_without_torsion() {
+        let edge = |x, y, torsion| ConeEdge { tangential: [x, y], torsion };
+        let edges =
+            vec![edge(0.4, 0.0, 0.01), edge(-0.4, 0.0, 0.01), edge(0.0, 0.6, -0.01), edge(0.0, -0.6, -0.01)];
+        let slice = Cone::Polyhedral(edges.into()).without_torsion();
+        assert!(!slice.carries_torsion());
+        // Half way between the two pairs.
+        assert!((support(&slice, [1.0, 0.0, 0.0]) - 0.2).abs() < 1e-12);
+        assert!((support(&slice, [0.0, 1.0, 0.0]) - 0.3).abs() < 1e-12);
+        let soft = Cone::Elliptic { mu: 0.5, gamma: 0.002 };
+        assert_eq!(soft.without_torsion(), Cone::Elliptic { mu: 0.5, gamma: 0.0 });
+    }
+
+    #[test]
+    fn torsion_and_friction_share_a_grained_cone() {
+        let cone = Cone::grained(&Vec3::z(), &Vec3::x(), [0.8, 0.4], 0.003);
+        assert!((support(&cone, [0.0, 0.0, 1.0]) - 0.003).abs() < 1e-12);
+        assert!(support(&cone.without_torsion(), [0.0, 0.0, 1.0]) == 0.0);
+        let widest = |k: usize| {
+            let (sin, cos) = (0.1 * k as f64).sin_cos();
+            support(&cone, [cos, sin, 0.0])
+        };
+        assert!((0..63).all(|k| widest(k) <= 0.8 + 1e-12 && widest(k) > 0.38));
+    }
 }

@@ -16,13 +16,15 @@
 //! is a whole one:
 //!
 //! ```
-//! use regrasp_api::{Build, Cone, Contact, ContactModel, Entry, NoSettings, Settings, Slot, check_settings};
+//! use regrasp_api::{
+//!     Build, Cone, Contact, ContactModel, Entry, FingerIndex, NoSettings, Settings, Slot, check_settings,
+//! };
 //!
 //! /// Point contact with friction, of which only 70 % are relied on.
 //! struct Cautious;
 //!
 //! impl ContactModel for Cautious {
-//!     fn cone(&self, _contact: &Contact, mu: f64) -> Cone<'_> {
+//!     fn cone(&self, _finger: FingerIndex, _contact: &Contact, mu: f64) -> Cone<'_> {
 //!         Cone::Elliptic { mu: 0.7 * mu, gamma: 0.0 }
 //!     }
 //!

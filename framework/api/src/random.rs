@@ -18,6 +18,16 @@ impl Random {
         Self { state: std::array::from_fn(|_| split_mix(&mut mixer)) }
     }
 
+    /// The stream in a state that [`Random::state`] gave.
+    pub fn from_state(state: [u64; 4]) -> Self {
+        Self { state }
+    }
+
+    /// Where the stream is: what comes next follows from these words alone.
+    pub fn state(&self) -> [u64; 4] {
+        self.state
+    }
+
     /// Uniform over all 64-bit words.
     pub fn word(&mut self) -> u64 {
         let s = &mut self.state;

@@ -91,7 +91,7 @@ impl<'a> Task<'a> {
     /// For what rests: regrasps, start and goals. While the object moves it is [`Task::transfer_grasp`].
     pub fn grasp(&self, q: &Configuration, holding: FingerSet) -> Grasp<'a> {
         let mu = self.planning_friction();
-        self.grasp_with(q, holding, |contact| self.contact_model.cone(contact, mu))
+        self.grasp_with(q, holding, |finger, contact| self.contact_model.cone(finger, contact, mu))
     }
 
     /// The same while the object moves: contacts may spin about their normals, and then transmit no torsion.
@@ -99,19 +99,19 @@ impl<'a> Task<'a> {
     /// A transfer, and a path in GS_n that transfers are to follow, is stable where this grasp is.
     pub fn transfer_grasp(&self, q: &Configuration, holding: FingerSet) -> Grasp<'a> {
         let mu = self.planning_friction();
-        self.grasp_with(q, holding, |contact| self.contact_model.spinning_cone(contact, mu))
+        self.grasp_with(q, holding, |finger, contact| self.contact_model.spinning_cone(finger, contact, mu))
     }
 
     fn grasp_with(
         &self,
         q: &Configuration,
         holding: FingerSet,
-        cone: impl Fn(&Contact) -> Cone<'a>,
+        cone: impl Fn(FingerIndex, &Contact) -> Cone<'a>,
     ) -> Grasp<'a> {
         let mut grasp = Grasp::new(q.X_HO.rotation.inverse() * self.g_H);
         for (finger, contact) in q.contacts.iter() {
             if let (Some(contact), true) = (contact, holding.contains(finger)) {
-                let cone = cone(contact);
+                let cone = cone(finger, contact);
                 grasp.push(GraspContact { finger, p_OC: contact.p_OC, n_O: contact.n_O, cone });
             }
         }

@@ -33,10 +33,10 @@ fn build(lie: Lie) -> Box<dyn ContactModel> {
 }
 
 impl ContactModel for Liar {
-    fn cone(&self, _contact: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _: FingerIndex, _contact: &Contact, mu: f64) -> Cone<'_> {
         let round = Cone::Elliptic { mu, gamma: 0.0 };
         match self.lie {
-            Lie::NoEdges if mu == 0.0 => Cone::Polyhedral(&[]),
+            Lie::NoEdges if mu == 0.0 => Cone::Polyhedral(Vec::new().into()),
             Lie::ShrinksAtHighFriction if mu > 1.0 => Cone::Elliptic { mu: 0.9, gamma: 0.0 },
             Lie::WiderThanCoulomb => Cone::Elliptic { mu: 1.1 * mu, gamma: 0.0 },
             Lie::Counts if self.calls.fetch_add(1, Ordering::Relaxed) % 7 == 6 && mu > 0.1 => {
@@ -53,10 +53,10 @@ impl ContactModel for Liar {
         }
     }
 
-    fn spinning_cone(&self, contact: &Contact, mu: f64) -> Cone<'_> {
+    fn spinning_cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
         match self.lie {
             Lie::SpinsOnForEver => Cone::Elliptic { mu, gamma: 1e-3 },
-            _ => self.cone(contact, mu),
+            _ => self.cone(finger, contact, mu),
         }
     }
 

@@ -56,7 +56,7 @@ impl Liar {
 fn with_more_friction<'a>(grasp: &Grasp<'a>) -> Grasp<'a> {
     let mut other = Grasp::new(grasp.g_O);
     for contact in grasp.contacts() {
-        let mut contact = *contact;
+        let mut contact = contact.clone();
         if let Cone::Elliptic { mu, gamma } = contact.cone {
             contact.cone = Cone::Elliptic { mu: 1.5 * mu, gamma };
         }

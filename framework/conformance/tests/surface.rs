@@ -12,6 +12,9 @@ enum Lie {
     Nothing,
     SamplesBeside,
     SamplesTheUpperHalf,
+    SamplesFacetsAlike,
+    SamplesNearTheMiddle,
+    ClosedForm,
     ProjectsToVertices,
     BelievesHints,
     EdgesAreSoft,
@@ -45,6 +48,11 @@ impl Liar {
         let mut path = SurfacePath::default();
         self.honest.geodesic(from, to, &mut path, context)?;
         Ok(path)
+    }
+
+    /// Whether the object is the kit's ball, of 30 mm.
+    fn is_ball(&self) -> bool {
+        self.mesh.vertices().iter().all(|v| (v.norm() - 0.03).abs() < 1e-9)
     }
 
     /// Adds up the lengths of a path.
@@ -87,6 +95,24 @@ impl SurfaceParam for Liar {
                 while contact.p_OC.z < 0.0 && random.index(3) == 0 {
                     contact = self.honest.sample(random);
                 }
+            }
+            // Each facet as often as any other, whatever its area.
+            Lie::SamplesFacetsAlike => {
+                let facet = random.index(self.mesh.facets().len()) as u32;
+                let [a, b, c] = self.mesh.corners(facet);
+                let (s, t) = (random.unit().sqrt(), random.unit());
+                let p_OC = a * (1.0 - s) + b * (s * (1.0 - t)) + c * (s * t);
+                contact = Contact { facet, p_OC, n_O: self.mesh.normal(facet) };
+            }
+            // The same face, but nearer to its middle.
+            Lie::SamplesNearTheMiddle => {
+                let inner = Contact { p_OC: contact.p_OC * 0.98, ..contact };
+                contact = self.honest.project(&inner.tip_center(0.01), None).contact;
+            }
+            // On a ball around the mesh, where the kit's ball is round.
+            Lie::ClosedForm if self.is_ball() => {
+                contact.n_O = contact.p_OC.normalize();
+                contact.p_OC = contact.n_O * 0.03;
             }
             _ => {}
         }
@@ -193,6 +219,8 @@ fn each_liar_fails_its_check_and_no_other() {
     let liars = [
         (liar!(Lie::SamplesBeside), "sample-on-surface"),
         (liar!(Lie::SamplesTheUpperHalf), "sample-uniform"),
+        (liar!(Lie::SamplesFacetsAlike), "sample-uniform"),
+        (liar!(Lie::SamplesNearTheMiddle), "sample-uniform"),
         (liar!(Lie::ProjectsToVertices), "project-exact"),
         (liar!(Lie::BelievesHints), "project-ignores-hint"),
         (liar!(Lie::EdgesAreSoft), "edge-distance"),
@@ -208,4 +236,10 @@ fn each_liar_fails_its_check_and_no_other() {
         (liar!(Lie::OnlyAtHome), "surface-pure"),
     ];
     support::judge(Slot::Surface, &liar!(Lie::Nothing), &liars, &[]);
+}
+
+#[test]
+fn a_closed_form_in_place_of_the_mesh_is_no_surface() {
+    let report = regrasp_conformance::check(&liar!(Lie::ClosedForm));
+    assert!(report.failed().contains(&"sample-on-surface"), "{report}");
 }

@@ -2,8 +2,8 @@
 
 use crate::Choices;
 use regrasp_api::{
-    Build, BuildError, Built, Cone, Contact, ContactModel, Entry, NoSettings, Parts, Settings, SettingsError,
-    Slot, StabilityTest, check_count, check_settings,
+    Build, BuildError, Built, Cone, Contact, ContactModel, Entry, FingerIndex, NoSettings, Parts, Settings,
+    SettingsError, Slot, StabilityTest, check_count, check_settings,
 };
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ impl Settings for AlwaysSettings {
 
 struct Point;
 impl ContactModel for Point {
-    fn cone(&self, _: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _: FingerIndex, _: &Contact, mu: f64) -> Cone<'_> {
         Cone::Elliptic { mu, gamma: 0.0 }
     }
 

@@ -56,8 +56,8 @@ impl ConeRecord {
     /// The record of a cone.
     pub fn of(cone: &Cone<'_>) -> Self {
         let edge = |edge: &ConeEdge| EdgeRecord { tangential: edge.tangential, torsion: edge.torsion };
-        match *cone {
-            Cone::Elliptic { mu, gamma } => Self::Elliptic(ConeClaim { mu, gamma }),
+        match cone {
+            Cone::Elliptic { mu, gamma } => Self::Elliptic(ConeClaim { mu: *mu, gamma: *gamma }),
             Cone::Polyhedral(edges) => Self::Polyhedral(edges.iter().map(edge).collect()),
         }
     }
@@ -76,8 +76,8 @@ pub struct ConeClaim {
 impl ConeClaim {
     /// The claim for contacts with this cone; `None` where it is not elliptic.
     pub fn from_cone(cone: &Cone<'_>) -> Option<Self> {
-        match *cone {
-            Cone::Elliptic { mu, gamma } => Some(Self { mu, gamma }),
+        match cone {
+            Cone::Elliptic { mu, gamma } => Some(Self { mu: *mu, gamma: *gamma }),
             Cone::Polyhedral(_) => None,
         }
     }

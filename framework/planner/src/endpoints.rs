@@ -103,7 +103,7 @@ fn stable(work: &mut Work<'_>, q: &Configuration) -> Result<bool, CallError> {
     let mut grasp = regrasp_api::Grasp::new(q.X_HO.rotation.inverse() * task.g_H);
     for (finger, contact) in q.contacts.iter() {
         let Some(contact) = contact else { continue };
-        let cone = task.contact_model.cone(contact, task.object.friction);
+        let cone = task.contact_model.cone(finger, contact, task.object.friction);
         grasp.push(GraspContact { finger, p_OC: contact.p_OC, n_O: contact.n_O, cone });
     }
     Ok(!grasp.contacts().is_empty()

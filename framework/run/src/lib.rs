@@ -1,11 +1,13 @@
 //! The main job as a library: a scenario file becomes a checked [`Scenario`](scenario::Scenario), that a [`Setup`] with its plugins
 //! built, and that a plan which was verified.
 
+mod audit;
 mod error;
 mod plan_file;
 pub mod scenario;
 mod setup;
 mod task;
 
+pub use audit::*;
 pub use error::*;
 pub use setup::*;

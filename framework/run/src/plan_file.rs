@@ -1,7 +1,7 @@
 //! The plan file of an outcome.
 
 use crate::{RunError, Setup};
-use regrasp_api::Contact;
+use regrasp_api::{Contact, FingerIndex};
 use regrasp_plan::{
     Claims, ConeClaim, ContactClaim, Format, MarginFrame, Motion, Plan, PluginChoice, ResolvedScenario,
     StoppedBy, TransferLaw, VERSION,
@@ -34,7 +34,7 @@ impl Setup<'_> {
         })
     }
 
-    fn resolved_scenario(&self) -> ResolvedScenario {
+    pub(super) fn resolved_scenario(&self) -> ResolvedScenario {
         let plugin = |choice: &regrasp_host::Choice| PluginChoice {
             id: choice.id.clone(),
             settings: Value::Object(choice.settings.clone()),
@@ -49,12 +49,12 @@ impl Setup<'_> {
     /// What the plan claims: one cone for all contacts, or none where they differ.
     fn claims(&self, motion: &Motion) -> Claims {
         let object = &self.scenario.object;
-        let cone = |contact: &Contact| {
-            ConeClaim::from_cone(&self.plugins.contact_model.cone(contact, object.friction))
+        let cone = |(finger, contact): (FingerIndex, &Contact)| {
+            ConeClaim::from_cone(&self.plugins.contact_model.cone(finger, contact, object.friction))
         };
         let states = motion.segments.iter().flat_map(|segment| &segment.states);
         let mut cones =
-            states.flat_map(|q| q.contacts.iter().filter_map(|(_, contact)| contact.as_ref())).map(cone);
+            states.flat_map(|q| q.contacts.iter().filter_map(|(i, c)| Some((i, c.as_ref()?)))).map(cone);
         let first = cones.next().flatten();
         let cone = first.filter(|_| cones.all(|other| other == first));
         let model = self.choices().choice(regrasp_api::Slot::ContactModel).id.clone();

@@ -1,6 +1,8 @@
 //! `contact-model/frictionless`: a point that pushes along the normal only.
 
-use regrasp_api::{Build, Cone, Contact, ContactModel, Entry, NoSettings, Settings, Slot, check_settings};
+use regrasp_api::{
+    Build, Cone, Contact, ContactModel, Entry, FingerIndex, NoSettings, Settings, Slot, check_settings,
+};
 
 /// Frictionless point contact: a force along the inward normal and nothing else, whatever the friction coefficient.
 ///
@@ -10,7 +12,7 @@ use regrasp_api::{Build, Cone, Contact, ContactModel, Entry, NoSettings, Setting
 pub struct Frictionless;
 
 impl ContactModel for Frictionless {
-    fn cone(&self, _contact: &Contact, _mu: f64) -> Cone<'_> {
+    fn cone(&self, _finger: FingerIndex, _contact: &Contact, _mu: f64) -> Cone<'_> {
         Cone::Elliptic { mu: 0.0, gamma: 0.0 }
     }
 

@@ -1,6 +1,8 @@
 //! `contact-model/pcwf`: point contact with Coulomb friction, the paper's model.
 
-use regrasp_api::{Build, Cone, Contact, ContactModel, Entry, NoSettings, Settings, Slot, check_settings};
+use regrasp_api::{
+    Build, Cone, Contact, ContactModel, Entry, FingerIndex, NoSettings, Settings, Slot, check_settings,
+};
 
 /// Point contact with friction: forces inside the cone `|f_t| ≤ μ f_n`, no torque about the normal.
 ///
@@ -12,7 +14,7 @@ use regrasp_api::{Build, Cone, Contact, ContactModel, Entry, NoSettings, Setting
 pub struct Pcwf;
 
 impl ContactModel for Pcwf {
-    fn cone(&self, _contact: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _finger: FingerIndex, _contact: &Contact, mu: f64) -> Cone<'_> {
         Cone::Elliptic { mu, gamma: 0.0 }
     }
 

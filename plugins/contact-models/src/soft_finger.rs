@@ -1,7 +1,8 @@
 //! `contact-model/soft-finger`: point contact with friction and a torque about the normal.
 
 use regrasp_api::{
-    Build, Cone, Contact, ContactModel, Entry, Settings, SettingsError, Slot, check_range, check_settings,
+    Build, Cone, Contact, ContactModel, Entry, FingerIndex, Settings, SettingsError, Slot, check_range,
+    check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -50,7 +51,7 @@ impl SoftFinger {
 }
 
 impl ContactModel for SoftFinger {
-    fn cone(&self, _contact: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _finger: FingerIndex, _contact: &Contact, mu: f64) -> Cone<'_> {
         Cone::Elliptic { mu, gamma: self.gamma }
     }
 

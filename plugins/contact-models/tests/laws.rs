@@ -1,7 +1,7 @@
 //! The laws of the contact model's role: pure, monotone in the friction, elliptic cones of the right family.
 
 use proptest::prelude::*;
-use regrasp_api::{Build, Cone, Contact, ContactModel, Entry, Vec3, inventory};
+use regrasp_api::{Build, Cone, Contact, ContactModel, Entry, FingerIndex, Vec3, inventory};
 use regrasp_contact_models::{Frictionless, Pcwf, SoftFinger, SoftFingerSettings};
 
 fn models() -> [Box<dyn ContactModel>; 3] {
@@ -31,8 +31,8 @@ proptest! {
     ) {
         let contact = Contact { facet: 3, p_OC: Vec3::from(p), n_O: Vec3::x() };
         for model in models() {
-            let less = transmits(model.cone(&contact, mu), f_t, m);
-            prop_assert!(!less || transmits(model.cone(&contact, mu + more), f_t, m));
+            let less = transmits(model.cone(FingerIndex(0), &contact, mu), f_t, m);
+            prop_assert!(!less || transmits(model.cone(FingerIndex(0), &contact, mu + more), f_t, m));
         }
     }
 
@@ -41,7 +41,7 @@ proptest! {
         let here = Contact { facet: 0, p_OC: Vec3::zeros(), n_O: Vec3::z() };
         let there = Contact { facet: 9, p_OC: Vec3::from(p), n_O: Vec3::y() };
         for model in models() {
-            prop_assert_eq!(model.cone(&here, mu), model.cone(&there, mu));
+            prop_assert_eq!(model.cone(FingerIndex(0), &here, mu), model.cone(FingerIndex(0), &there, mu));
         }
     }
 }
@@ -49,7 +49,8 @@ proptest! {
 #[test]
 fn families_and_fewest_contacts_are_those_of_theory() {
     let contact = Contact { facet: 0, p_OC: Vec3::zeros(), n_O: Vec3::z() };
-    let found = models().map(|model| (radii(model.cone(&contact, 0.7)), model.fewest_contacts()));
+    let found =
+        models().map(|model| (radii(model.cone(FingerIndex(0), &contact, 0.7)), model.fewest_contacts()));
     assert_eq!(found, [((0.0, 0.0), 7), ((0.7, 0.0), 3), ((0.7, 0.004), 2)]);
 }
 

@@ -45,7 +45,7 @@ fn drifting(count: u8, mu: f64) -> Vec<Grasp<'static>> {
                 let drift = Vec3::new(0.001, -0.0007, 0.0005) * f64::from(step) * (i as f64 - 1.5) * 0.5;
                 let p_OC = contact.p_OC + drift;
                 let n_O = (contact.n_O + drift * 10.0).normalize();
-                moved.push(GraspContact { p_OC, n_O, ..*contact });
+                moved.push(GraspContact { p_OC, n_O, ..contact.clone() });
             }
             all.push(moved);
         }

@@ -91,6 +91,12 @@ pub(crate) fn three_of(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Option
     left.next().is_none().then_some(three)
 }
 
+/// Whether all contacts of `grasp` except those of `lifted` have round cones.
+pub(crate) fn is_round(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> bool {
+    let round = |contact: &GraspContact<'_>| matches!(contact.cone, Cone::Elliptic { .. });
+    grasp.contacts().iter().all(|contact| Some(contact.finger) == lifted || round(contact))
+}
+
 /// Contacts closer together than this share of their distance from O's origin are one point: their differences are rounding.
 const COINCIDENT: f64 = 1e-9;
 
@@ -131,8 +137,8 @@ impl ScaledGrasp {
         let mut scaled =
             Self { contacts: [nothing; MAX_FINGERS], count: 0, center_O: Vec3::zeros(), length: 1.0 };
         for contact in grasp.contacts().iter().filter(|contact| Some(contact.finger) != lifted) {
-            let (mu, gamma) = match contact.cone {
-                Cone::Elliptic { mu, gamma } => (mu, gamma),
+            let (mu, gamma) = match &contact.cone {
+                Cone::Elliptic { mu, gamma } => (*mu, *gamma),
                 Cone::Polyhedral(_) => (0.0, 0.0),
             };
             scaled.contacts[scaled.count] = ScaledContact { r: contact.p_OC, n: -contact.n_O, mu, gamma };
@@ -186,17 +192,18 @@ impl ScaledGrasp {
 /// What to use where cones are polyhedral; the tests that take them are no substitute for `equilibrium`, which alone weighs a load.
 fn instead(plugin: &str) -> &'static str {
     if plugin == crate::equilibrium::ID {
-        "use an elliptic contact model, such as `contact-model/pcwf` or `contact-model/soft-finger`; `stability-test/linearised` and \
-         `stability-test/wrench-ball` take polyhedral cones, but ask for closure, whatever the load"
+        "use an elliptic contact model, such as `contact-model/pcwf` or `contact-model/soft-finger`; `stability-test/force-closure` \
+         takes polyhedral cones, but asks for closure, whatever the load"
     } else {
-        "use an elliptic contact model, or `stability-test/linearised` or `stability-test/wrench-ball`, which take polyhedral cones as \
-         they are"
+        "use an elliptic contact model, or `stability-test/force-closure`, which takes polyhedral cones as they are"
     }
 }
 
 fn unscaled(contact: &GraspContact<'_>, plugin: &'static str) -> Result<ScaledContact, CallError> {
-    match contact.cone {
-        Cone::Elliptic { mu, gamma } => Ok(ScaledContact { r: contact.p_OC, n: -contact.n_O, mu, gamma }),
+    match &contact.cone {
+        Cone::Elliptic { mu, gamma } => {
+            Ok(ScaledContact { r: contact.p_OC, n: -contact.n_O, mu: *mu, gamma: *gamma })
+        }
         Cone::Polyhedral(_) => Err(CallError::Unsupported {
             plugin: plugin.to_owned(),
             reason: format!(

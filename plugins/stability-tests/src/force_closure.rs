@@ -1,7 +1,10 @@
 //! `stability-test/force-closure`: exact force closure with elliptic cones.
 
 use crate::closure::{Frame, Outcome, Search, bracket, three_points};
-use crate::contacts::{ScaledGrasp, Twist, three_of};
+use crate::contacts::{ScaledGrasp, Twist, is_round, three_of};
+use crate::linearised::{assess_edges, verdict};
+use crate::spanning::span;
+use crate::wrenches::WrenchSet;
 use regrasp_api::{
     Assessment, Build, CallError, Certificate, Context, Entry, FingerIndex, Grasp, Hint, Settings,
     SettingsError, Slot, Stability, StabilityTest, Vec3, check_range, check_settings,
@@ -38,7 +41,8 @@ impl Settings for ForceClosureSettings {
     }
 }
 
-/// Force closure, decided exactly for point contacts with and without friction and for soft fingers, with no linearised cone.
+/// Force closure, decided exactly for point contacts with and without friction, for soft fingers, with no linearised cone, and for polyhedral
+/// cones.
 ///
 /// A grasp is force closure where internal forces exist strictly inside every cone and the grasp map has rank 6. That is so exactly where
 /// the polar body Ω = {w : h_i(-w) ≤ 1} of the contacts' wrench sets is bounded, h_i the support function of contact i's cone at unit
@@ -48,6 +52,9 @@ impl Settings for ForceClosureSettings {
 /// The margin is Q1 = min over unit twists of max_i h_i (Ferrari & Canny's with the sum of the normal forces as bound), torques taken about
 /// the contacts' centroid over the largest distance from it unless the caller fixes both. Verdicts do not depend on that choice, except
 /// that a margin up to `undecided_margin` may give [`Stability::Undecided`].
+///
+/// Grasps with a polyhedral cone are decided as [`crate::Linearised`] does it, the polyhedral cones as they are and the round ones round: a
+/// linear feasibility problem whose columns are found in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceClosure {
     tau: f64,
@@ -64,7 +71,7 @@ impl ForceClosure {
         self.tau
     }
 
-    /// The verdict on `grasp` without `lifted`; `plugin` is named where a cone is not elliptic.
+    /// The verdict on `grasp` without `lifted`; `plugin` is named where it cannot be given.
     pub(crate) fn judge(
         &self,
         grasp: &Grasp<'_>,
@@ -76,6 +83,9 @@ impl ForceClosure {
         let in_closed_form = three_of(grasp, lifted).and_then(|contacts| three_points(&contacts));
         if let Some(closed) = in_closed_form {
             return Ok(if closed { Stability::Stable } else { Stability::Unstable });
+        }
+        if !is_round(grasp, lifted) {
+            return Ok(verdict(&span(&WrenchSet::gather(grasp, lifted, None))));
         }
         Ok(self.search(&ScaledGrasp::gather(grasp, lifted, plugin)?, hint))
     }
@@ -137,6 +147,9 @@ impl StabilityTest for ForceClosure {
         center_O: Option<Vec3>,
         _context: &mut Context<'_>,
     ) -> Result<Assessment, CallError> {
+        if !is_round(grasp, None) {
+            return Ok(assess_edges(&WrenchSet::gather(grasp, None, None), length, center_O));
+        }
         let scaled = ScaledGrasp::gather(grasp, None, ID)?;
         let stability = self.decide(&scaled, &mut Hint::default());
         let frame = Frame::new(&scaled, length, center_O);

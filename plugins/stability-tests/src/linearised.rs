@@ -80,6 +80,22 @@ pub(crate) fn proof(set: &WrenchSet<'_>, found: &Span) -> Certificate {
     }
 }
 
+/// Verdict, margin and proof by the contacts' sets of wrenches.
+pub(crate) fn assess_edges(set: &WrenchSet<'_>, length: Option<f64>, center_O: Option<Vec3>) -> Assessment {
+    let found = span(set);
+    let (stability, certificate) = (verdict(&found), proof(set, &found));
+    let frame = Frame::new(&set.grasp, length, center_O);
+    let (margin_lower, margin_upper) = match stability {
+        Stability::Stable => {
+            let depth = hull_depth(set, &frame, Until::Gap(MARGIN_GAP));
+            (depth.lower.max(0.0), depth.upper.max(0.0))
+        }
+        Stability::Unstable => (0.0, 0.0),
+        Stability::Undecided => (0.0, f64::INFINITY),
+    };
+    Assessment { stability, margin_lower, margin_upper, certificate }
+}
+
 /// The depth of the origin in the hull of the contacts' wrenches, in the coordinates of `frame`.
 pub(crate) fn hull_depth(set: &WrenchSet<'_>, frame: &Frame, until: Until) -> Depth {
     depth(|w| frame.wrench(&set.wrench(&set.farthest(&frame.twist(w)))), until)
@@ -103,19 +119,7 @@ impl StabilityTest for Linearised {
         center_O: Option<Vec3>,
         _context: &mut Context<'_>,
     ) -> Result<Assessment, CallError> {
-        let set = WrenchSet::gather(grasp, None, Some(&self.ring));
-        let found = span(&set);
-        let (stability, certificate) = (verdict(&found), proof(&set, &found));
-        let frame = Frame::new(&set.grasp, length, center_O);
-        let (margin_lower, margin_upper) = match stability {
-            Stability::Stable => {
-                let depth = hull_depth(&set, &frame, Until::Gap(MARGIN_GAP));
-                (depth.lower.max(0.0), depth.upper.max(0.0))
-            }
-            Stability::Unstable => (0.0, 0.0),
-            Stability::Undecided => (0.0, f64::INFINITY),
-        };
-        Ok(Assessment { stability, margin_lower, margin_upper, certificate })
+        Ok(assess_edges(&WrenchSet::gather(grasp, None, Some(&self.ring)), length, center_O))
     }
 
     fn stable_without(

@@ -1,15 +1,15 @@
 //! `stability-test/wrench-ball`: the largest ball of wrenches that the grasp resists.
 
 use crate::closure::{Frame, Search, floor, glance};
+use crate::contacts::is_round;
 use crate::force_closure::{ForceClosure, ForceClosureSettings};
 use crate::hull::Until;
 use crate::linearised::{hull_depth, proof, verdict};
 use crate::spanning::span;
 use crate::wrenches::{MAX_EDGES, MIN_EDGES, Ring, WrenchSet};
 use regrasp_api::{
-    Assessment, Build, BuildError, CallError, Certificate, Cone, Context, Entry, FingerIndex, Grasp,
-    GraspContact, Hint, Settings, SettingsError, Slot, Stability, StabilityTest, Vec3, check_count,
-    check_range, check_settings,
+    Assessment, Build, BuildError, CallError, Certificate, Context, Entry, FingerIndex, Grasp, Hint,
+    Settings, SettingsError, Slot, Stability, StabilityTest, Vec3, check_count, check_range, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -98,7 +98,7 @@ impl WrenchBall {
         Ok(Self { settings, ring, closure, p_OCm })
     }
 
-    fn gather<'a>(&'a self, grasp: &Grasp<'a>, lifted: Option<FingerIndex>) -> WrenchSet<'a> {
+    fn gather<'a>(&'a self, grasp: &'a Grasp<'_>, lifted: Option<FingerIndex>) -> WrenchSet<'a> {
         WrenchSet::gather(grasp, lifted, self.ring.as_ref())
     }
 
@@ -131,10 +131,9 @@ impl WrenchBall {
         lifted: Option<FingerIndex>,
         hint: &mut Hint,
     ) -> Result<Stability, CallError> {
-        let round = |contact: &GraspContact<'_>| matches!(contact.cone, Cone::Elliptic { .. });
         // Where closure is all that is asked, round cones need no set of wrenches.
         let closure_only = self.ring.is_none() && self.settings.least_margin <= 0.0;
-        if closure_only && grasp.contacts().iter().all(round) {
+        if closure_only && is_round(grasp, lifted) {
             return self.closure.judge(grasp, lifted, hint, ID);
         }
         Ok(self.decide(&self.gather(grasp, lifted), hint))

@@ -1,7 +1,7 @@
 //! The wrenches that a grasp's contacts can transmit at unit normal force: round, with a ring of edges inside, or polyhedral as given.
 
 use crate::contacts::{ScaledContact, ScaledGrasp, Twist};
-use regrasp_api::{Cone, ConeEdge, FingerIndex, Grasp, MAX_FINGERS, Vec3, any_orthogonal};
+use regrasp_api::{Cone, ConeEdge, FingerIndex, Grasp, MAX_FINGERS, Vec3, tangents};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The most edges of a linearised cone.
@@ -101,7 +101,7 @@ pub(crate) struct WrenchSet<'a> {
 
 impl<'a> WrenchSet<'a> {
     /// The contacts of `grasp` except those of `lifted`.
-    pub fn gather(grasp: &Grasp<'a>, lifted: Option<FingerIndex>, ring: Option<&'a Ring>) -> Self {
+    pub fn gather(grasp: &'a Grasp<'_>, lifted: Option<FingerIndex>, ring: Option<&'a Ring>) -> Self {
         let zero = Vec3::zeros();
         let mut set = Self {
             grasp: ScaledGrasp::gather_points(grasp, lifted),
@@ -112,9 +112,8 @@ impl<'a> WrenchSet<'a> {
         };
         let held = grasp.contacts().iter().filter(|contact| Some(contact.finger) != lifted);
         for (i, contact) in held.enumerate() {
-            let t1 = any_orthogonal(&-contact.n_O);
-            set.tangents[i] = [t1, t1.cross(&contact.n_O)];
-            if let Cone::Polyhedral(edges) = contact.cone {
+            set.tangents[i] = tangents(&-contact.n_O);
+            if let Cone::Polyhedral(edges) = &contact.cone {
                 set.edges[i] = Some(edges);
                 set.polyhedral = true;
             }

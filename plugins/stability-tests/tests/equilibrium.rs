@@ -332,7 +332,7 @@ fn it_says_what_it_means_and_refuses_edges() {
     assert_eq!(support::force_closure().criterion(), Criterion::Closure);
     let edges = [ConeEdge { tangential: [0.5, 0.0], torsion: 0.0 }; 3];
     let mut grasp = Grasp::new(DOWN);
-    let (p_OC, n_O, cone) = (Vec3::x(), Vec3::x(), Cone::Polyhedral(&edges));
+    let (p_OC, n_O, cone) = (Vec3::x(), Vec3::x(), Cone::Polyhedral(edges[..].into()));
     grasp.push(GraspContact { finger: FingerIndex(0), p_OC, n_O, cone });
     let mut context = regrasp_api::Context::new(Random::from_key(0, 0, 0, 0), &regrasp_api::Uninterrupted);
     let said = test.test(&grasp, &mut Hint::default(), &mut context);

@@ -136,6 +136,7 @@ fn edges_given_as_a_polyhedral_cone_are_the_same_edges() {
         let edges = pyramids(&touches, 8);
         let given = verdict_of(&linearised(3), &polyhedral(&touches, &edges));
         assert_eq!(given, verdict_of(&linearised(8), &grasp_of(&touches)), "{touches:?}");
+        assert_eq!(given, verdict_of(&force_closure(), &polyhedral(&touches, &edges)), "{touches:?}");
         stable += usize::from(given.is_stable());
     }
     assert!((200..800).contains(&stable), "{stable}");

@@ -1,7 +1,8 @@
 //! A contact model: point contact with a friction coefficient that is trusted only in part.
 
 use regrasp_api::{
-    Build, Cone, Contact, ContactModel, Entry, Settings, SettingsError, Slot, check_range, check_settings,
+    Build, Cone, Contact, ContactModel, Entry, FingerIndex, Settings, SettingsError, Slot, check_range,
+    check_settings,
 };
 use serde::{Deserialize, Serialize};
 
@@ -41,7 +42,7 @@ impl ScaledFriction {
 }
 
 impl ContactModel for ScaledFriction {
-    fn cone(&self, _contact: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _finger: FingerIndex, _contact: &Contact, mu: f64) -> Cone<'_> {
         Cone::Elliptic { mu: self.settings.factor * mu, gamma: 0.0 }
     }
 

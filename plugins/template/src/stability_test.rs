@@ -75,8 +75,8 @@ impl PressedPair {
 
 /// The slope of a contact's friction cone. A torque about the normal, where the cone has one, only helps and is left out.
 fn slope(contact: &GraspContact<'_>) -> Result<f64, CallError> {
-    match contact.cone {
-        Cone::Elliptic { mu, .. } => Ok(mu),
+    match &contact.cone {
+        Cone::Elliptic { mu, .. } => Ok(*mu),
         Cone::Polyhedral(_) => Err(CallError::Unsupported {
             plugin: ENTRY.id.into(),
             reason: "it knows round friction cones only; use another stability test with this contact model"

@@ -41,7 +41,7 @@ const fn entry(id: &'static str, slots: &'static [Slot], build: Build) -> Entry 
 #[derive(Default)]
 struct LateCone(AtomicUsize);
 impl ContactModel for LateCone {
-    fn cone(&self, _: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _: FingerIndex, _: &Contact, mu: f64) -> Cone<'_> {
         assert!(self.0.fetch_add(1, Ordering::Relaxed) < 500, "the cone broke");
         Cone::Elliptic { mu, gamma: 0.0 }
     }
@@ -217,7 +217,7 @@ const NO_SCHEMA: Entry = Entry { id: "sampler/no-schema", schema: || panic!("the
 /// A working contact model that panics when it is dropped.
 struct NotDropped;
 impl ContactModel for NotDropped {
-    fn cone(&self, _: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _: FingerIndex, _: &Contact, mu: f64) -> Cone<'_> {
         Cone::Elliptic { mu, gamma: 0.0 }
     }
     fn fewest_contacts(&self) -> usize {

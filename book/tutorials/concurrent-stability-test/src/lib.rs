@@ -120,8 +120,8 @@ fn room(contact: &GraspContact<'_>, force: &Vec3) -> f64 {
 // ANCHOR: cones
 /// The slope of a contact's friction cone. A torque about the normal, where the cone has one, only helps and is left out.
 fn slope(contact: &GraspContact<'_>) -> Result<f64, CallError> {
-    match contact.cone {
-        Cone::Elliptic { mu, .. } => Ok(mu),
+    match &contact.cone {
+        Cone::Elliptic { mu, .. } => Ok(*mu),
         Cone::Polyhedral(_) => {
             let reason = "it knows round friction cones only; use `stability-test/linearised`".into();
             Err(CallError::Unsupported { plugin: ENTRY.id.into(), reason })

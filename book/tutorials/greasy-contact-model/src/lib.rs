@@ -2,7 +2,7 @@
 
 // ANCHOR: uses
 use regrasp_api::{
-    Build, Cone, Contact, ContactModel, Entry, Settings, SettingsError, Slot, Vec3, check_range,
+    Build, Cone, Contact, ContactModel, Entry, FingerIndex, Settings, SettingsError, Slot, Vec3, check_range,
     check_settings,
 };
 use serde::{Deserialize, Serialize};
@@ -69,7 +69,7 @@ impl Greasy {
 
 // ANCHOR: role
 impl ContactModel for Greasy {
-    fn cone(&self, contact: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
         let left = if self.is_greasy(contact) { self.factor } else { 1.0 };
         Cone::Elliptic { mu: left * mu, gamma: 0.0 }
     }
@@ -102,7 +102,7 @@ mod tests {
     /// The friction that is left at a point of a ball.
     fn friction_at(model: &Greasy, p_OC: Vec3) -> f64 {
         let contact = Contact { facet: 0, p_OC, n_O: p_OC.normalize() };
-        match model.cone(&contact, 0.8) {
+        match model.cone(FingerIndex(0), &contact, 0.8) {
             Cone::Elliptic { mu, gamma: 0.0 } => mu,
             other => panic!("a point contact was expected: {other:?}"),
         }

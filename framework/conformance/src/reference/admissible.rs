@@ -10,7 +10,7 @@ use regrasp_api::{
 pub struct RoundCones;
 
 impl ContactModel for RoundCones {
-    fn cone(&self, _contact: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _finger: FingerIndex, _contact: &Contact, mu: f64) -> Cone<'_> {
         Cone::Elliptic { mu, gamma: 0.0 }
     }
 
@@ -27,7 +27,7 @@ pub struct SoftCones;
 const GAMMA: f64 = 0.004;
 
 impl ContactModel for SoftCones {
-    fn cone(&self, _contact: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _finger: FingerIndex, _contact: &Contact, mu: f64) -> Cone<'_> {
         Cone::Elliptic { mu, gamma: GAMMA }
     }
 

@@ -87,17 +87,17 @@ pub(crate) fn tangents(n: &Vec3) -> (Vec3, Vec3) {
 
 /// Points (tangential force, torsion) whose hull lies inside, or around, the slice of the cone at unit normal force.
 fn slice(contact: &GraspContact<'_>, outer: bool) -> Vec<[f64; 3]> {
-    match contact.cone {
+    match &contact.cone {
         Cone::Polyhedral(edges) => {
             edges.iter().map(|e| [e.tangential[0], e.tangential[1], e.torsion]).collect()
         }
-        Cone::Elliptic { mu: 0.0, gamma } => vec![[0.0, 0.0, gamma], [0.0, 0.0, -gamma]],
-        Cone::Elliptic { mu, gamma: 0.0 } => {
+        &Cone::Elliptic { mu: 0.0, gamma } => vec![[0.0, 0.0, gamma], [0.0, 0.0, -gamma]],
+        &Cone::Elliptic { mu, gamma: 0.0 } => {
             let radius = if outer { mu / (PI / EDGES as f64).cos() } else { mu };
             let angles = (0..EDGES).map(|k| TAU * k as f64 / EDGES as f64);
             angles.map(|a| [radius * a.cos(), radius * a.sin(), 0.0]).collect()
         }
-        Cone::Elliptic { mu, gamma } => {
+        &Cone::Elliptic { mu, gamma } => {
             let swell = if outer { SWELL } else { 1.0 };
             let scale = |u: Vec3| [swell * mu * u.x, swell * mu * u.y, swell * gamma * u.z];
             (0..POINTS).map(|k| scale(spiral(k))).collect()

@@ -41,6 +41,8 @@ pub(crate) const LAWS: &[Law] = &[
     },
 ];
 
+/// The finger that touches.
+const FINGER: FingerIndex = FingerIndex(0);
 /// Friction coefficients in ascending order.
 const FRICTIONS: [f64; 6] = [0.0, 0.05, 0.3, 0.76, 1.0, 4.0];
 
@@ -60,7 +62,7 @@ fn contacts() -> Vec<Contact> {
 
 /// The largest value over the cone's slice at unit normal force of the product with `w` = (t1, t2, torsion / m).
 pub(crate) fn support(cone: &Cone<'_>, w: &Vec3) -> f64 {
-    match *cone {
+    match cone {
         Cone::Elliptic { mu, gamma } => (mu * mu * (w.x * w.x + w.y * w.y) + (gamma * w.z).powi(2)).sqrt(),
         Cone::Polyhedral(edges) => {
             let value = |t: [f64; 2], torsion: f64| t[0] * w.x + t[1] * w.y + torsion * w.z;
@@ -80,11 +82,11 @@ fn cone_valid(subject: &Subject<'_>) -> Finding {
     let model = build(subject)?;
     for contact in contacts() {
         for mu in FRICTIONS {
-            let cone = model.cone(&contact, mu);
+            let cone = model.cone(FINGER, &contact, mu);
             let text = || format!("the cone at μ = {mu}: {cone:?}");
-            let finite = match cone {
+            let finite = match &cone {
                 Cone::Elliptic { mu, gamma } => {
-                    mu.is_finite() && gamma.is_finite() && mu >= 0.0 && gamma >= 0.0
+                    mu.is_finite() && gamma.is_finite() && *mu >= 0.0 && *gamma >= 0.0
                 }
                 Cone::Polyhedral(edges) => {
                     let finite = |x: &f64| x.is_finite();
@@ -105,8 +107,8 @@ fn cone_monotone(subject: &Subject<'_>) -> Finding {
         for pair in FRICTIONS.windows(2) {
             for w in directions() {
                 // Values are copied out at once: a model may own one buffer of edges only for each friction.
-                let low = support(&model.cone(&contact, pair[0]), &w);
-                let high = support(&model.cone(&contact, pair[1]), &w);
+                let low = support(&model.cone(FINGER, &contact, pair[0]), &w);
+                let high = support(&model.cone(FINGER, &contact, pair[1]), &w);
                 ensure(high >= low - 1e-12, || {
                     format!("along {w:?} the cone shrinks from {low} to {high} as μ grows over {pair:?}")
                 })?;
@@ -122,7 +124,7 @@ fn cone_within_friction(subject: &Subject<'_>) -> Finding {
         for mu in FRICTIONS {
             for k in 0..64 {
                 let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 64.0).sin_cos();
-                let reach = support(&model.cone(&contact, mu), &Vec3::new(cos, sin, 0.0));
+                let reach = support(&model.cone(FINGER, &contact, mu), &Vec3::new(cos, sin, 0.0));
                 ensure(reach <= mu + 1e-9, || format!("tangential forces up to {reach} at μ = {mu}"))?;
             }
         }
@@ -135,10 +137,10 @@ fn spinning_cone(subject: &Subject<'_>) -> Finding {
     for contact in contacts() {
         for mu in FRICTIONS {
             // Frictionless contacts may stand in for cones whose torsion cannot be told apart.
-            let spinning = model.spinning_cone(&contact, mu);
+            let spinning = model.spinning_cone(FINGER, &contact, mu);
             ensure(!spinning.carries_torsion(), || format!("{spinning:?} at μ = {mu} carries torsion"))?;
             for w in directions() {
-                let (low, high) = (support(&spinning, &w), support(&model.cone(&contact, mu), &w));
+                let (low, high) = (support(&spinning, &w), support(&model.cone(FINGER, &contact, mu), &w));
                 ensure(low <= high + 1e-12, || {
                     format!(
                         "along {w:?} the spinning cone reaches {low}, the resting one {high}, at μ = {mu}"
@@ -169,8 +171,9 @@ fn some_closed(model: &dyn ContactModel, contacts: usize) -> bool {
         let mut grasp = Grasp::new(Vec3::zeros());
         for (i, touch) in touches.iter().enumerate() {
             let contact = Contact { facet: 0, p_OC: touch.p, n_O: touch.n };
-            let cone = model.cone(&contact, 0.8);
-            grasp.push(GraspContact { finger: FingerIndex(i as u8), p_OC: touch.p, n_O: touch.n, cone });
+            let cone = model.cone(FINGER, &contact, 0.8);
+            let finger = FingerIndex(i as u8);
+            grasp.push(GraspContact { finger, p_OC: touch.p, n_O: touch.n, cone });
         }
         closure(&grasp) == Closure::Closed
     })
@@ -181,6 +184,6 @@ fn model_pure(subject: &Subject<'_>) -> Finding {
     let contacts = contacts();
     pure(contacts.len() * FRICTIONS.len(), |i| {
         let (contact, mu) = (&contacts[i / FRICTIONS.len()], FRICTIONS[i % FRICTIONS.len()]);
-        Ok::<_, Fault>((format!("{:?}", model.cone(contact, mu)), model.fewest_contacts()))
+        Ok::<_, Fault>((format!("{:?}", model.cone(FINGER, contact, mu)), model.fewest_contacts()))
     })
 }

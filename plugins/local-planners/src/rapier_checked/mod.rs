@@ -112,8 +112,9 @@ impl LocalPlanner for RapierChecked {
 /// Polyhedral cones stand for the round one inside which forces are sought.
 fn friction(task: &Task<'_>, q: &Configuration) -> Result<f64, CallError> {
     let mut least = task.planning_friction();
-    for contact in q.contacts.iter().filter_map(|(_, contact)| contact.as_ref()) {
-        let cone = task.contact_model.cone(contact, task.planning_friction());
+    for (finger, contact) in q.contacts.iter() {
+        let Some(contact) = contact else { continue };
+        let cone = task.contact_model.cone(finger, contact, task.planning_friction());
         if cone.carries_torsion() {
             let reason = regrasp_physics::PhysicsError::Torsion.to_string();
             return Err(CallError::Unsupported { plugin: ID.into(), reason });

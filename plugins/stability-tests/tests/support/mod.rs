@@ -70,7 +70,7 @@ pub fn pyramids(touches: &[Touch], count: usize) -> Vec<Vec<ConeEdge>> {
 pub fn polyhedral<'a>(touches: &[Touch], edges: &'a [Vec<ConeEdge>]) -> Grasp<'a> {
     let mut grasp = Grasp::new(Vec3::zeros());
     for (i, (touch, edges)) in touches.iter().zip(edges).enumerate() {
-        let cone = Cone::Polyhedral(edges);
+        let cone = Cone::Polyhedral(edges.as_slice().into());
         grasp.push(GraspContact { finger: FingerIndex(i as u8), p_OC: touch.p, n_O: touch.n, cone });
     }
     grasp

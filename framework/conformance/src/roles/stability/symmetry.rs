@@ -63,7 +63,7 @@ pub(super) fn permutation(subject: &Subject<'_>) -> Finding {
         for turn in 1..touches.len() {
             let mut other = regrasp_api::Grasp::new(Vec3::zeros());
             let (front, back) = grasp.contacts().split_at(turn);
-            back.iter().chain(front).for_each(|&contact| other.push(contact));
+            back.iter().chain(front).for_each(|contact| other.push(contact.clone()));
             let found = super::call::verdict(&*test, &other)?.is_some_and(|s| s.is_stable());
             ensure(found == plain, || {
                 format!("stable: {plain}, but {found} with contact {turn} first: {touches:?}")

@@ -2,7 +2,7 @@
 
 use crate::fixtures::Bench;
 use crate::law::{Subject, random};
-use crate::reference::{Closest, closest_on_mesh, closest_on_primitive};
+use crate::reference::{Closest, closest_on_mesh};
 use crate::report::{Fault, Finding, broken, ensure};
 use regrasp_api::{
     Build, Contact, Hand, Mesh, ObjectModel, Parts, Primitive, Random, SurfaceParam, SurfacePath, Vec3,
@@ -18,17 +18,12 @@ pub(super) struct Ground {
     pub surface: Box<dyn SurfaceParam>,
     pub object: ObjectModel,
     pub radius: f64,
-    /// The closed form that the plugin takes for the true surface, if it is not the facets.
-    pub form: Option<Primitive>,
 }
 
 impl Ground {
-    /// The closest point of the true surface to `p` (m, in O).
+    /// The closest point of the true surface, which is the mesh, to `p` (m, in O).
     pub fn closest(&self, p: &Vec3) -> Closest {
-        match &self.form {
-            Some(form) => closest_on_primitive(form, p),
-            None => closest_on_mesh(&self.object.mesh, p),
-        }
+        closest_on_mesh(&self.object.mesh, p)
     }
 
     /// Whether no two points of the object lie on different sides of its surface.
@@ -63,10 +58,12 @@ impl Ground {
 }
 
 /// The objects: name, closed form, wished number of facets.
-fn objects() -> [(&'static str, Primitive, usize); 4] {
+fn objects() -> [(&'static str, Primitive, usize); 5] {
     [
         ("sphere", Primitive::Sphere { radius: 0.03 }, 320),
         ("cube", Primitive::Cuboid { half_size: Vec3::repeat(0.0225) }, 12),
+        // 1 : 2 : 5: who draws facets instead of area is seen here.
+        ("bar", Primitive::Cuboid { half_size: Vec3::new(0.01, 0.02, 0.05) }, 12),
         ("ellipsoid", Primitive::Ellipsoid { semi_axes: Vec3::new(0.04, 0.03, 0.025) }, 320),
         ("torus", Primitive::Torus { ring_radius: 0.035, tube_radius: 0.012 }, 400),
     ]
@@ -84,14 +81,7 @@ pub(super) fn build(
         Err(regrasp_api::BuildError::Unsupported(_)) => return Ok(None),
         built => built?,
     };
-    let mut ground = Ground { name, surface, object, radius: hand.fingertip_radius(), form: None };
-    let somewhere = ground.surface.sample(&mut random(0)).p_OC;
-    let form = ground.object.primitive;
-    let off = |form: &Primitive| closest_on_primitive(form, &somewhere).distance.abs();
-    if ground.closest(&somewhere).distance.abs() > EXACT {
-        ground.form = form.filter(|form| off(form) < EXACT);
-    }
-    Ok(Some(ground))
+    Ok(Some(Ground { name, surface, object, radius: hand.fingertip_radius() }))
 }
 
 /// Tries something on every object that the plugin takes; it must take one.

@@ -5,7 +5,7 @@ use super::point::is_contact;
 use crate::law::{Subject, context, counted_once};
 use crate::reference::FacetSurface;
 use crate::report::{Fault, Finding, ensure};
-use regrasp_api::{Contact, Primitive, Slot, SurfaceParam, SurfacePath, Waypoint};
+use regrasp_api::{Contact, Slot, SurfaceParam, SurfacePath, Waypoint};
 
 /// Pairs of contacts on each object.
 const PAIRS: usize = 18;
@@ -99,9 +99,8 @@ pub(super) fn length(subject: &Subject<'_>) -> Finding {
         })?;
         let legs = path.waypoints.windows(2).map(|w| (w[1].contact.p_OC - w[0].contact.p_OC).norm());
         let sum: f64 = legs.sum();
-        // Chords are shorter than the arcs of a closed form; under a concave edge the contact jumps.
-        let slack = if ground.form.is_some() { 1e-3 } else { 1e-6 };
-        ensure(!ground.is_convex() || (path.length - sum).abs() <= slack * sum + 1e-9, || {
+        // Under a concave edge the contact jumps.
+        ensure(!ground.is_convex() || (path.length - sum).abs() <= 1e-6 * sum + 1e-9, || {
             format!("length {} m, but the waypoints add up to {sum} m: {from:?} {to:?}", path.length)
         })
     })
@@ -114,21 +113,11 @@ pub(super) fn shortest(subject: &Subject<'_>) -> Finding {
         if !ground.is_convex() {
             return Ok(());
         }
-        let longest = match ground.form {
-            Some(Primitive::Sphere { radius }) => {
-                radius * from.p_OC.cross(&to.p_OC).norm().atan2(from.p_OC.dot(&to.p_OC))
-            }
-            _ => {
-                if reference.as_ref().is_none_or(|(name, _)| *name != ground.name) {
-                    let facets = FacetSurface::new(&ground.object.mesh, ground.radius);
-                    reference = Some((ground.name, facets));
-                }
-                let (_, facets) = reference.as_ref().expect("it was just made");
-                // The facets of a round object lie under its surface, by less than 1 % of the length.
-                let faceting = if ground.form.is_some() { 1.01 } else { 1.0 };
-                faceting * over_facets(facets, from, to)?
-            }
-        };
+        if reference.as_ref().is_none_or(|(name, _)| *name != ground.name) {
+            reference = Some((ground.name, FacetSurface::new(&ground.object.mesh, ground.radius)));
+        }
+        let (_, facets) = reference.as_ref().expect("it was just made");
+        let longest = over_facets(facets, from, to)?;
         ensure(path.length <= longest * (1.0 + tolerance) + 1e-9, || {
             format!("length {} m, but {longest} m is possible: {from:?} {to:?}", path.length)
         })

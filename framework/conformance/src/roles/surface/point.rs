@@ -24,23 +24,52 @@ pub(super) fn sample_on_surface(subject: &Subject<'_>) -> Finding {
     })
 }
 
-/// The cube's faces and the octants of the round objects are hit equally often.
+/// Parts of the surface, each with its share of the area: the thirds of a box's six faces, the octants of round objects.
+fn parts(ground: &Ground) -> (Vec<f64>, impl Fn(&Vec3) -> usize) {
+    let half = match ground.object.primitive {
+        Some(Primitive::Cuboid { half_size }) => Some(half_size),
+        _ => None,
+    };
+    let shares = match half {
+        Some(h) => {
+            let areas = [h.y * h.z, h.z * h.x, h.x * h.y];
+            let all = 2.0 * areas.iter().sum::<f64>();
+            areas.iter().flat_map(|area| [area / (3.0 * all); 6]).collect()
+        }
+        None => vec![0.125; 8],
+    };
+    let place = move |p: &Vec3| match half {
+        Some(half) => {
+            let axis = p.component_div(&half).iamax();
+            let along = (axis + 1) % 3;
+            let third = (1.5 * (p[along] / half[along] + 1.0)).clamp(0.0, 2.9) as usize;
+            6 * axis + 3 * usize::from(p[axis] > 0.0) + third
+        }
+        None => (0..3).map(|i| usize::from(p[i] > 0.0) << i).sum(),
+    };
+    (shares, place)
+}
+
+/// Every part of the surface is hit as often as its area says.
 pub(super) fn sample_uniform(subject: &Subject<'_>) -> Finding {
     on_each(subject, |ground| {
-        let (mut random, mut hits) = (random(42), [0_u32; 8]);
-        let cube = matches!(ground.object.primitive, Some(Primitive::Cuboid { .. }));
-        let parts = if cube { 6 } else { 8 };
-        let share = 1500;
-        for _ in 0..share * parts {
-            let p = ground.surface.sample(&mut random).p_OC;
-            let octant = (0..3).map(|i| usize::from(p[i] > 0.0) << i).sum();
-            let face = 2 * p.iamax() + usize::from(p[p.iamax()] > 0.0);
-            hits[if cube { face } else { octant }] += 1;
+        let (shares, place) = parts(ground);
+        let (mut random, mut hits) = (random(42), vec![0_u32; shares.len()]);
+        let count = 12_000;
+        for _ in 0..count {
+            hits[place(&ground.surface.sample(&mut random).p_OC)] += 1;
         }
-        // Five standard deviations.
-        let allowed = 5.0 * f64::from(share).sqrt();
-        let fair = hits[..parts as usize].iter().all(|&h| (f64::from(h) - f64::from(share)).abs() < allowed);
-        ensure(fair, || format!("hits of equal parts, {share} expected: {:?}", &hits[..parts as usize]))
+        for (part, (share, hit)) in shares.iter().zip(&hits).enumerate() {
+            let expected = share * f64::from(count);
+            // Five standard deviations.
+            ensure((f64::from(*hit) - expected).abs() < 5.0 * expected.sqrt(), || {
+                format!(
+                    "part {part} of {} is hit {hit} times of {count}, {expected:.0} expected",
+                    shares.len()
+                )
+            })?;
+        }
+        Ok(())
     })
 }
 

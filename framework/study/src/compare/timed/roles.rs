@@ -9,12 +9,12 @@ use regrasp_api::{
 };
 
 impl ContactModel for Timed<'_, dyn ContactModel + '_> {
-    fn cone(&self, contact: &Contact, mu: f64) -> Cone<'_> {
-        self.leaf(|model| model.cone(contact, mu))
+    fn cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
+        self.leaf(|model| model.cone(finger, contact, mu))
     }
 
-    fn spinning_cone(&self, contact: &Contact, mu: f64) -> Cone<'_> {
-        self.leaf(|model| model.spinning_cone(contact, mu))
+    fn spinning_cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
+        self.leaf(|model| model.spinning_cone(finger, contact, mu))
     }
 
     fn fewest_contacts(&self) -> usize {

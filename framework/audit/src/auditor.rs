@@ -1,0 +1,103 @@
+//! Who keeps the first breach of a run.
+
+use crate::laws::Broken;
+use regrasp_api::{CallError, ObjectModel, Slot};
+use serde_json::Value;
+use std::cell::Cell;
+use std::sync::{Mutex, PoisonError};
+
+thread_local! {
+    // Whether this thread repeats a call or checks a law: what is called then was audited before, or is not the plugin's doing.
+    static RESTING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// A law that a plugin broke in a real call.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Breach {
+    /// The plugin's id.
+    pub plugin: String,
+    /// The slot that it fills.
+    pub slot: Slot,
+    /// The method that was called.
+    pub call: &'static str,
+    /// The law and how it was broken.
+    pub broken: Broken,
+    /// What the plugin was called with.
+    pub input: Value,
+}
+
+impl Breach {
+    /// As the error that ends the call.
+    pub fn error(&self) -> CallError {
+        let Broken { law, what } = &self.broken;
+        CallError::Contract {
+            plugin: self.plugin.clone(),
+            reason: format!("`{}` breaks `{law}`: {what}", self.call),
+        }
+    }
+
+    /// As a JSON object: `plugin`, `slot`, `call`, `law`, `what`, `input`.
+    pub fn json(&self) -> Value {
+        serde_json::json!({
+            "plugin": self.plugin,
+            "slot": self.slot.name(),
+            "call": self.call,
+            "law": self.broken.law,
+            "what": self.broken.what,
+            "input": self.input,
+        })
+    }
+}
+
+/// Judges the calls of one run.
+pub struct Auditor<'a> {
+    /// The object whose mesh is the truth.
+    pub(crate) object: &'a ObjectModel,
+    /// Radius of the fingertips (m).
+    pub(crate) radius: f64,
+    plugins: Vec<(Slot, String)>,
+    breach: Mutex<Option<Breach>>,
+}
+
+impl<'a> Auditor<'a> {
+    /// An auditor of the plugins that fill the slots, for an object and a fingertip radius (m).
+    pub fn new(
+        object: &'a ObjectModel,
+        radius: f64,
+        plugins: impl IntoIterator<Item = (Slot, String)>,
+    ) -> Self {
+        Self { object, radius, plugins: plugins.into_iter().collect(), breach: Mutex::new(None) }
+    }
+
+    /// The first breach, if there was one.
+    pub fn breach(&self) -> Option<Breach> {
+        self.breach.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Keeps a breach, and gives the error that it is.
+    pub(crate) fn keep(&self, slot: Slot, call: &'static str, broken: Broken, input: Value) -> CallError {
+        let plugin = self.plugins.iter().find(|(place, _)| *place == slot);
+        let plugin = plugin.map_or_else(|| slot.name().to_owned(), |(_, id)| id.clone());
+        let breach = Breach { plugin, slot, call, broken, input };
+        let error = breach.error();
+        self.breach.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(breach);
+        error
+    }
+}
+
+/// Whether this thread is not to audit now.
+pub(crate) fn is_resting() -> bool {
+    RESTING.get()
+}
+
+/// Does `work` without auditing what it calls.
+pub(crate) fn resting<R>(work: impl FnOnce() -> R) -> R {
+    struct Restore(bool);
+    impl Drop for Restore {
+        fn drop(&mut self) {
+            RESTING.set(self.0);
+        }
+    }
+    let _restore = Restore(RESTING.replace(true));
+    work()
+}

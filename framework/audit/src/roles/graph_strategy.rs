@@ -1,0 +1,38 @@
+//! Strategies under audit.
+
+use crate::Audited;
+use crate::laws::ensure;
+use regrasp_api::{Action, CallError, Context, GraphStrategy, GraphView, NodeId};
+use serde_json::json;
+
+impl GraphStrategy for Audited<'_, dyn GraphStrategy + '_> {
+    fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError> {
+        self.call(
+            "next",
+            context,
+            |strategy, context| strategy.next(graph, context),
+            |context| {
+                json!({
+                    "nodes": graph.node_count(),
+                    "components": graph.components().len(),
+                    "edges": graph.edges().len(),
+                    "generated": graph.generated().0,
+                    "history": graph.history().len(),
+                    "random": crate::input::random(context),
+                })
+            },
+            |_, action, _| {
+                let known = |node: NodeId| (node.0 as usize) < graph.node_count();
+                let sound = match *action {
+                    Action::Extend(node, within, _) => {
+                        known(node) && within.radius > 0.0 && within.angle > 0.0
+                    }
+                    Action::Connect(a, b, _) => known(a) && known(b) && a != b,
+                    Action::Check(id) => graph.edges().iter().any(|edge| edge.id == id),
+                    _ => true,
+                };
+                ensure("strategy-sensible", sound, || format!("{action:?} with {} nodes", graph.node_count()))
+            },
+        )
+    }
+}

@@ -1,0 +1,163 @@
+//! Stability tests under audit.
+
+use crate::laws::{self, Kept, broken, ensure};
+use crate::{Audited, input};
+use regrasp_api::{
+    Assessment, CallError, Cone, Context, Criterion, FingerIndex, FingerSet, Grasp, Hint, Stability,
+    StabilityTest, Vec3,
+};
+use serde_json::json;
+
+/// More friction, with which a stable grasp stays stable.
+const MORE: f64 = 1.25;
+
+/// The verdict without a hint; `None` where the run ends, or the test does not handle the cones.
+fn plain(test: &dyn StabilityTest, grasp: &Grasp<'_>, context: &mut Context<'_>) -> Option<Stability> {
+    test.test(grasp, &mut Hint::default(), context).ok()
+}
+
+/// The same grasp with more friction; round cones alone.
+fn with_more_friction(grasp: &Grasp<'_>) -> Option<Grasp<'static>> {
+    let mut other = Grasp::new(grasp.g_O);
+    for contact in grasp.contacts() {
+        let Cone::Elliptic { mu, gamma } = contact.cone else { return None };
+        let cone = Cone::Elliptic { mu: MORE * mu, gamma };
+        other.push(regrasp_api::GraspContact {
+            cone,
+            finger: contact.finger,
+            p_OC: contact.p_OC,
+            n_O: contact.n_O,
+        });
+    }
+    Some(other)
+}
+
+/// Laws that relate the verdict to those on other grasps.
+fn verdict_kept(
+    test: &dyn StabilityTest,
+    grasp: &Grasp<'_>,
+    found: Stability,
+    context: &mut Context<'_>,
+) -> Kept {
+    if !found.is_stable() {
+        return Ok(());
+    }
+    if let Some(other) = with_more_friction(grasp)
+        && let Some(verdict) = plain(test, &other, context)
+    {
+        ensure("monotone-in-friction", verdict.is_stable(), || {
+            format!("stable, and {verdict:?} with {MORE} times the friction")
+        })?;
+    }
+    let mut other = Grasp::new(grasp.g_O);
+    grasp.contacts().iter().rev().for_each(|contact| other.push(contact.clone()));
+    match plain(test, &other, context) {
+        Some(verdict) if !verdict.is_stable() => {
+            broken("permutation", format!("stable, and {verdict:?} with the contacts in reverse order"))
+        }
+        _ => Ok(()),
+    }
+}
+
+impl StabilityTest for Audited<'_, dyn StabilityTest + '_> {
+    fn test(
+        &self,
+        grasp: &Grasp<'_>,
+        hint: &mut Hint,
+        context: &mut Context<'_>,
+    ) -> Result<Stability, CallError> {
+        // The second call knows nothing from before: a hint never decides.
+        let first = std::cell::Cell::new(true);
+        let hint = std::cell::RefCell::new(hint);
+        self.call(
+            "test",
+            context,
+            |test, context| match first.replace(false) {
+                true => test.test(grasp, &mut hint.borrow_mut(), context),
+                false => test.test(grasp, &mut Hint::default(), context),
+            },
+            |_| input::grasp(grasp),
+            |test, found, context| verdict_kept(test, grasp, *found, &mut context.twin()),
+        )
+    }
+
+    fn assess(
+        &self,
+        grasp: &Grasp<'_>,
+        length: Option<f64>,
+        center_O: Option<Vec3>,
+        context: &mut Context<'_>,
+    ) -> Result<Assessment, CallError> {
+        let object = self.auditor.object;
+        self.value_of(
+            "assess",
+            context,
+            |test, context| test.assess(grasp, length, center_O, context),
+            |_| json!({ "grasp": input::grasp(grasp), "length": length, "center_O": center_O.as_ref().map(input::vector) }),
+            |test, found, context| {
+                laws::assessment_kept(found)?;
+                laws::certificate_kept(grasp, object, test.criterion(), found)?;
+                match plain(test, grasp, &mut context.twin()) {
+                    Some(tested) => ensure("test-equals-assess", tested.is_stable() == found.stability.is_stable(), || {
+                        format!("`test` says {tested:?}, `assess` {:?}", found.stability)
+                    }),
+                    None => Ok(()),
+                }
+            },
+        )
+    }
+
+    fn liftable(
+        &self,
+        grasp: &Grasp<'_>,
+        enough: usize,
+        context: &mut Context<'_>,
+    ) -> Result<FingerSet, CallError> {
+        self.value_of(
+            "liftable",
+            context,
+            |test, context| test.liftable(grasp, enough, context),
+            |_| json!({ "grasp": input::grasp(grasp), "enough": enough }),
+            |test, found, context| {
+                let holds = |finger: &FingerIndex| {
+                    let rest = grasp.without(*finger);
+                    rest.contacts().is_empty()
+                        || plain(test, &rest, &mut context.twin()).is_some_and(|s| !s.is_stable())
+                };
+                match found.iter().find(holds) {
+                    Some(finger) => broken(
+                        "liftable",
+                        format!("finger {} may be lifted, but the rest is not stable", finger.0),
+                    ),
+                    None => Ok(()),
+                }
+            },
+        )
+    }
+
+    fn stable_without(
+        &self,
+        grasp: &Grasp<'_>,
+        finger: FingerIndex,
+        context: &mut Context<'_>,
+    ) -> Result<bool, CallError> {
+        self.value_of(
+            "stable_without",
+            context,
+            |test, context| test.stable_without(grasp, finger, context),
+            |_| json!({ "grasp": input::grasp(grasp), "finger": finger.0 }),
+            |test, found, context| {
+                let rest = grasp.without(finger);
+                let says = !rest.contacts().is_empty()
+                    && plain(test, &rest, &mut context.twin()).is_none_or(Stability::is_stable);
+                ensure("liftable", !found || says, || {
+                    format!("says that the rest holds without finger {}, `test` says no", finger.0)
+                })
+            },
+        )
+    }
+
+    fn criterion(&self) -> Criterion {
+        self.inner.criterion()
+    }
+}

@@ -1,0 +1,115 @@
+//! Surfaces under audit.
+
+use crate::laws::{self, Ground, Kept, ensure};
+use crate::{Audited, input};
+use regrasp_api::{CallError, Contact, Context, Projection, Random, SurfaceParam, SurfacePath, Vec3};
+use serde_json::json;
+use std::cell::RefCell;
+
+/// Of how many projections one is compared with all facets, which takes longer than the plugin does: told by the position's bits, so that the
+/// same calls are looked at in every run.
+const RARE: u64 = 16;
+
+fn alike<T: PartialEq>(first: &T, again: &T) -> Kept {
+    ensure("pure", first == again, || "the same call again answers otherwise".into())
+}
+
+/// Whether a position is one of the few that are compared with all facets.
+fn is_looked_at(p: &Vec3) -> bool {
+    let bits = p.iter().fold(0_u64, |sum, x| (sum ^ x.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    (bits >> 40).is_multiple_of(RARE)
+}
+
+impl Audited<'_, dyn SurfaceParam + '_> {
+    fn ground(&self) -> Ground<'_> {
+        Ground { mesh: &self.auditor.object.mesh, radius: self.auditor.radius }
+    }
+}
+
+impl SurfaceParam for Audited<'_, dyn SurfaceParam + '_> {
+    fn sample(&self, random: &mut Random) -> Contact {
+        let before = random.clone();
+        self.value(
+            "sample",
+            |surface| surface.sample(random),
+            || json!({}),
+            |surface, found| {
+                alike(found, &surface.sample(&mut before.clone()))?;
+                laws::contact_on_surface(&self.ground(), found)
+            },
+        )
+    }
+
+    fn geodesic(
+        &self,
+        from: &Contact,
+        to: &Contact,
+        path: &mut SurfacePath,
+        context: &mut Context<'_>,
+    ) -> Result<bool, CallError> {
+        let path = RefCell::new(path);
+        // The whole path is the answer.
+        let walked = |surface: &dyn SurfaceParam, context: &mut Context<'_>| {
+            let mut path = path.borrow_mut();
+            let found = surface.geodesic(from, to, &mut path, context)?;
+            Ok((found, found.then(|| path.clone())))
+        };
+        let answer = self.call(
+            "geodesic",
+            context,
+            walked,
+            |_| json!({ "from": input::contact(from), "to": input::contact(to) }),
+            |_, (_, path), _| match path {
+                Some(path) => laws::path_kept(&self.ground(), from, to, path),
+                None => Ok(()),
+            },
+        );
+        answer.map(|(found, _)| found)
+    }
+
+    fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
+        self.value(
+            "project",
+            |surface| surface.project(p_OF, hint),
+            || json!({ "p_OF": input::vector(p_OF), "hint": hint }),
+            |surface, found| {
+                let plain = surface.project(p_OF, None);
+                // On an edge either facet may be named.
+                let same = (plain.distance - found.distance).abs() <= 1e-9
+                    && (plain.contact.p_OC - found.contact.p_OC).norm() <= 1e-7;
+                let convex = self.ground().mesh.is_locally_convex();
+                ensure("project-hint", same || !convex, || {
+                    format!(
+                        "the hint changes the distance from {:e} m to {:e} m",
+                        plain.distance, found.distance
+                    )
+                })?;
+                if is_looked_at(p_OF) { laws::projection_kept(&self.ground(), p_OF, found) } else { Ok(()) }
+            },
+        )
+    }
+
+    fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
+        self.value(
+            "walk",
+            |surface| surface.walk(from, direction_O, distance),
+            || json!({ "from": input::contact(from), "direction_O": input::vector(direction_O), "distance": distance }),
+            |surface, found| {
+                alike(found, &surface.walk(from, direction_O, distance))?;
+                laws::walk_kept(&self.ground(), from, distance, found)
+            },
+        )
+    }
+
+    fn edge_distance(&self, contact: &Contact) -> f64 {
+        self.value(
+            "edge_distance",
+            |surface| surface.edge_distance(contact),
+            || json!({ "contact": input::contact(contact) }),
+            |surface, found| {
+                alike(found, &surface.edge_distance(contact))?;
+                ensure("edge-distance", *found >= 0.0, || format!("{found} m is no distance"))
+            },
+        )
+    }
+}
