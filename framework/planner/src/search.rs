@@ -112,7 +112,9 @@ impl Search<'_> {
             _ => return false,
         };
         let goal = self.leg.number;
-        self.state.warnings.push(format!("the graph strategy was stopped on the way to `goal[{goal}]`: {why}"));
+        self.state
+            .warnings
+            .push(format!("the graph strategy was stopped on the way to `goal[{goal}]`: {why}"));
         true
     }
 

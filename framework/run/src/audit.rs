@@ -48,11 +48,7 @@ impl Setup<'_> {
 }
 
 /// Plans by `solve` with every plugin of the request under audit.
-pub fn audited(
-    request: &Request<'_>,
-    auditor: &Auditor<'_>,
-    solve: Solve<'_>,
-) -> Result<Outcome, PlanError> {
+pub fn audited(request: &Request<'_>, auditor: &Auditor<'_>, solve: Solve<'_>) -> Result<Outcome, PlanError> {
     let drivers = &request.drivers;
     let contact_model = Audited::new(request.contact_model, Slot::ContactModel, auditor);
     let stability = Audited::new(request.stability, Slot::StabilityTest, auditor);
