@@ -28,6 +28,7 @@ mod terminal;
 mod verify;
 mod view;
 mod watch;
+mod watchdog;
 
 use args::{Arguments, Command};
 use clap::Parser;
