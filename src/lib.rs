@@ -30,8 +30,11 @@
 //! ([`Setup::task`], [`Setup::plugins`]), [`Setup::run`] takes a time limit, threads and progress, [`Registry::with_libraries`] loads plugins at
 //! run time, and [`study::compare`](mod@study::compare) compares combinations of plugins. The package's `examples/` has one small program for each of these.
 
+mod advice;
+pub mod page;
 mod stopwatch;
 
+pub use advice::advice;
 pub use stopwatch::Stopwatch;
 
 pub use regrasp_abi as abi;

@@ -28,7 +28,6 @@ mod terminal;
 mod verify;
 mod view;
 mod watch;
-mod watchdog;
 
 use args::{Arguments, Command};
 use clap::Parser;

@@ -5,7 +5,7 @@ use crate::outputs::{self, Kind};
 use crate::progress::Line;
 use crate::terminal::printable;
 use crate::watch::Watch;
-use crate::{Failure, grasps, overrides, plugins, report, say, say_json, view, watchdog};
+use crate::{Failure, grasps, overrides, plugins, report, say, say_json, view};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
 use regrasp::run::{Run, RunOptions, Setup, scenario};
@@ -20,7 +20,6 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     overrides::apply(&mut scenario, args)?;
     let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::bad_input)?;
     let watch = Watch::start(scenario.problem.limits.budget.time_limit);
-    watchdog::watch(scenario.problem.limits.budget.time_limit, &watch.heard, &setup, &registry);
     let line = Line::new();
     let (seed, threads) = (args.seed, usize::from(args.threads));
     let options = RunOptions { seed, threads, stop: &watch, clock: &watch, progress: &line };

@@ -1,11 +1,12 @@
 //! What `plan` says about a run.
 
 use crate::table::Table;
-use crate::verify::{check_table, place_text};
+use crate::verify::check_table;
 use regrasp::api::{Reason, Slot};
 use regrasp::host::Choices;
-use regrasp::plan::{Extreme, Plan, Statistics, StoppedBy};
-use regrasp::planner::{Status, Stuck};
+use regrasp::page::place_text;
+use regrasp::plan::{Extreme, Plan, Statistics};
+use regrasp::planner::Status;
 use regrasp::run::scenario::Scenario;
 use regrasp::run::{Run, RunOptions};
 use regrasp::verify::Check;
@@ -167,50 +168,10 @@ impl Summary<'_> {
         let reason = self.run.why_not_solved().unwrap_or_default();
         let kept = self.saved.map(|path| format!("; what was reached is kept as `{}`", path.display()));
         let rejections = rejections(&outcome.statistics);
-        format!("{reason}{}\n{}{rejections}", kept.unwrap_or_default(), self.advice())
-    }
-
-    fn advice(&self) -> String {
-        let outcome = &self.run.outcome;
-        let warned = outcome
-            .warnings
-            .iter()
-            .map(|warning| format!("  first look at  {warning}\n"))
-            .collect::<String>();
-        let cause = most_frequent(&outcome.statistics);
-        let place = match outcome.stuck {
-            Some(Stuck::StartGrasp) => "the start pose",
-            _ => "the goal pose",
-        };
-        let advice = match (outcome.stuck, cause) {
-            (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), Some(Reason::Reach | Reason::Limits)) => {
-                format!("most grasps are out of reach: move {place} closer to the hand")
-            }
-            (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), Some(Reason::Collision | Reason::Retreat)) => {
-                format!(
-                    "most grasps collide: move {place} away from palm and obstacles, or lower `limits.resolution.clearance`"
-                )
-            }
-            (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), _) => {
-                format!("change {place}, or raise the friction")
-            }
-            (_, _) if self.run.stopped_by == Some(StoppedBy::MaxNodes) && mostly_collides(&outcome.statistics) => {
-                "most motions collide: look whether palm, obstacles and fingers leave a way; if they do, raise `--max-nodes` or add a goal \
-                 half way"
-                    .into()
-            }
-            _ => format!("{}, try another `--seed`, or add a goal half way", self.more_budget()),
-        };
-        format!("{warned}  to try  {advice}\n")
-    }
-
-    /// How to raise the budget that ended the run.
-    fn more_budget(&self) -> &'static str {
-        match self.run.stopped_by {
-            Some(StoppedBy::MaxNodes) => "raise `--max-nodes`",
-            Some(StoppedBy::TimeLimit) => "raise `--time-limit`",
-            _ => "give it more time",
-        }
+        let advice = regrasp::advice(self.run);
+        let warned = outcome.warnings.iter().map(|warning| format!("  first look at  {warning}\n"));
+        let warned: String = warned.collect();
+        format!("{reason}{}\n{warned}  to try  {advice}\n{rejections}", kept.unwrap_or_default())
     }
 }
 
@@ -223,21 +184,6 @@ fn counted(number: usize, noun: &str) -> String {
 /// Duration of the motion (s).
 fn duration(run: &Run) -> Option<f64> {
     run.outcome.motion.segments.last()?.times.last().copied()
-}
-
-fn most_frequent(statistics: &Statistics) -> Option<Reason> {
-    let sampler = statistics.plugins.get(&Slot::Sampler)?;
-    sampler.rejections.iter().max_by_key(|&(_, count)| count).map(|(&reason, _)| reason)
-}
-
-/// Whether more than half of what the local planners refused collided.
-fn mostly_collides(statistics: &Statistics) -> bool {
-    let planners = [Slot::GraspPlanner, Slot::TransferPlanner, Slot::RegraspPlanner];
-    let refused = planners.iter().filter_map(|slot| statistics.plugins.get(slot)).map(|p| &p.rejections);
-    let (all, collided) = refused.fold((0, 0), |(all, collided), counts| {
-        (all + counts.values().sum::<u64>(), collided + counts.get(&Reason::Collision).copied().unwrap_or(0))
-    });
-    2 * collided > all
 }
 
 fn rejection_counts(statistics: &Statistics) -> Value {

@@ -4,7 +4,7 @@ use crate::args::VerifyArgs;
 use crate::table::Table;
 use crate::{Failure, say, say_json};
 use regrasp::api::Problem;
-use regrasp::plan::Place;
+use regrasp::page::place_text;
 use regrasp::verify::Check;
 use serde_json::json;
 
@@ -45,30 +45,10 @@ fn number(x: f64) -> String {
     if x == 0.0 || (1e-3..1e5).contains(&size) { format!("{x:.4}") } else { format!("{x:.2e}") }
 }
 
-/// A place in a plan in words, fingers and obstacles by the names that the problem gives them.
-pub fn place_text(place: &Place, problem: &Problem) -> String {
-    let part = |name: &str, index: Option<usize>| index.map(|index| format!("{name} {index}"));
-    let parts = [
-        part("goal", place.goal),
-        part("segment", place.segment),
-        part("state", place.state),
-        place.time.map(|time| format!("{time:.2} s")),
-        place.finger.map(|finger| finger_name(finger, problem)),
-        part("joint", place.joint),
-        place.pair.map(|(a, b)| format!("{} and {}", problem.name_of(a), problem.name_of(b))),
-        place.note.clone(),
-    ];
-    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
-}
-
-fn finger_name(finger: usize, problem: &Problem) -> String {
-    let named = problem.hand.finger.get(finger).map(|finger| format!("finger `{}`", finger.name));
-    named.unwrap_or_else(|| format!("finger {finger}"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use regrasp::plan::Place;
 
     #[test]
     fn numbers_are_short_at_any_size() {

@@ -1,12 +1,12 @@
 //! `regrasp view`, and the page that `regrasp plan --view` opens.
 
-mod extras;
 mod open;
 mod replay;
 
 use crate::args::PlanArgs;
 use crate::outputs::{self, Kind, OverwriteArgs};
 use crate::{Failure, say};
+use regrasp::page;
 use regrasp::plan::Plan;
 use regrasp::run::{Run, Setup};
 use regrasp::view::Extras;
@@ -38,7 +38,7 @@ pub fn run(args: &ViewArgs) -> Result<(), Failure> {
     outputs::check(&inputs, &[(&output, Kind::Page)], args.overwrite)?;
     let plan = regrasp::plan::read(&args.plan).map_err(Failure::bad_input)?;
     let replay = args.replay.as_deref().map(|path| replay::read(path, &plan)).transpose()?;
-    let extras = Extras { replay, ..extras::of_plan(&plan) };
+    let extras = Extras { replay, ..page::of_plan(&plan) };
     let bytes = write_page(&plan, &extras, &output).map_err(|reason| {
         Failure::bad_input(format!("`{}` cannot be shown: {reason}", args.plan.display()))
     })?;
@@ -73,9 +73,9 @@ pub fn show_run(args: &PlanArgs, setup: &Setup<'_>, run: &Run, saved: Option<&Pa
         }
         None => return tell("there is no motion to show; `--view-graph` shows what was tried"),
     };
-    let mut extras = extras::of_plan(&plan);
+    let mut extras = page::of_plan(&plan);
     if args.view_graph {
-        extras.graph = Some(extras::graph(&run.outcome.graph, setup.hand()));
+        extras.graph = Some(page::graph(&run.outcome.graph, setup.hand()));
     }
     let output = match saved {
         Some(path) => path.with_extension("html"),

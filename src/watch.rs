@@ -1,6 +1,5 @@
 //! The program's clock and what stops it: Ctrl-C, its like, and the time limit.
 
-use crate::watchdog::Heard;
 use regrasp::Stopwatch;
 use regrasp::api::Interrupt;
 use regrasp::plan::StoppedBy;
@@ -53,40 +52,31 @@ fn listen() {
 }
 
 /// A stopwatch that Ctrl-C stops, too.
-pub struct Watch {
-    time: Stopwatch,
-    /// Told when somebody learns that the time is up.
-    pub heard: Heard,
-}
+pub struct Watch(Stopwatch);
 
 impl Watch {
     /// Starts the clock; from now on Ctrl-C asks the run to stop, and a second one ends the program at once.
     pub fn start(limit_s: Option<f64>) -> Self {
         static HANDLER: Once = Once::new();
         HANDLER.call_once(listen);
-        let time = limit_s.map(Duration::from_secs_f64).map_or_else(Stopwatch::start, Stopwatch::limited);
-        Self { time, heard: Heard::default() }
+        Self(limit_s.map(Duration::from_secs_f64).map_or_else(Stopwatch::start, Stopwatch::limited))
     }
 }
 
 impl Clock for Watch {
     fn seconds(&self) -> f64 {
-        self.time.seconds()
+        self.0.seconds()
     }
 }
 
 impl Interrupt for Watch {
     fn interrupted(&self) -> bool {
-        let is_over = CTRL_C.load(Ordering::Relaxed) || self.time.interrupted();
-        if is_over {
-            self.heard.store(true, Ordering::Relaxed);
-        }
-        is_over
+        CTRL_C.load(Ordering::Relaxed) || self.0.interrupted()
     }
 }
 
 impl Stop for Watch {
     fn cause(&self) -> StoppedBy {
-        if CTRL_C.load(Ordering::Relaxed) { StoppedBy::Interrupt } else { self.time.cause() }
+        if CTRL_C.load(Ordering::Relaxed) { StoppedBy::Interrupt } else { self.0.cause() }
     }
 }

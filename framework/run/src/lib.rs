@@ -7,7 +7,9 @@ mod plan_file;
 pub mod scenario;
 mod setup;
 mod task;
+mod workbench;
 
 pub use audit::*;
 pub use error::*;
 pub use setup::*;
+pub use workbench::Workbench;

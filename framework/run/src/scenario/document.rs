@@ -1,6 +1,6 @@
-//! A TOML file as plain data that remembers its lines.
+//! A TOML or JSON file as plain data that remembers its lines.
 
-use super::{Place, ScenarioError};
+use super::{Place, ScenarioError, json};
 use regrasp_api::{KeyPath, Step, check_schema};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
@@ -9,6 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// A parsed file.
+#[derive(Clone)]
 pub struct Document {
     file: String,
     text: String,
@@ -18,7 +19,8 @@ pub struct Document {
 }
 
 impl Document {
-    /// Parses `text`; refuses wrong syntax, and any number that is NaN, infinite or too large.
+    /// Parses `text`, as JSON where it begins with a brace and as TOML otherwise; refuses wrong syntax, and any number that is NaN,
+    /// infinite or too large.
     pub fn parse(file: &str, text: &str) -> Result<Self, ScenarioError> {
         let mut document = Self {
             file: file.to_owned(),
@@ -26,6 +28,11 @@ impl Document {
             value: Value::Null,
             offsets: BTreeMap::new(),
         };
+        if is_json(text) {
+            document.value = serde_json::from_str(text).map_err(|error| document.json_syntax(&error))?;
+            document.offsets = json::offsets(text);
+            return Ok(document);
+        }
         let table = DeTable::parse(text).map_err(|error| document.syntax(&error))?;
         document.value = document.convert_table(table.get_ref(), &KeyPath::default())?;
         Ok(document)
@@ -67,7 +74,16 @@ impl Document {
 
     fn syntax(&self, error: &toml::de::Error) -> ScenarioError {
         let place = self.place_at(error.span().map(|span| span.start));
-        ScenarioError::Syntax { place, message: error.message().to_owned() }
+        ScenarioError::Syntax { language: "TOML", place, message: error.message().to_owned() }
+    }
+
+    fn json_syntax(&self, error: &serde_json::Error) -> ScenarioError {
+        let before = self.text.split_inclusive('\n').take(error.line().saturating_sub(1));
+        let place = self.place_at(Some(before.map(str::len).sum()));
+        // The parser's own words end with line and column, which the place has.
+        let message = error.to_string();
+        let words = message.split(" at line ").next().unwrap_or(&message);
+        ScenarioError::Syntax { language: "JSON", place, message: words.to_owned() }
     }
 
     fn convert_table(&mut self, table: &DeTable<'_>, path: &KeyPath) -> Result<Value, ScenarioError> {
@@ -108,6 +124,11 @@ impl Document {
     fn out_of_range(&self, path: &KeyPath, value: &str, range: &str) -> ScenarioError {
         ScenarioError::Range { place: self.place(path), value: value.to_owned(), range: range.to_owned() }
     }
+}
+
+/// Whether a file is JSON; no TOML file begins with a brace.
+pub fn is_json(text: &str) -> bool {
+    text.trim_start().starts_with('{')
 }
 
 /// Reads a path as it is written in messages: `goal[1].pose`.

@@ -65,9 +65,11 @@ pub enum ScenarioError {
         /// The system's word.
         cause: String,
     },
-    /// A file is not TOML.
-    #[error("not valid TOML: {message}\n{place}")]
+    /// A file is neither TOML nor JSON.
+    #[error("not valid {language}: {message}\n{place}")]
     Syntax {
+        /// What it was read as: `TOML`, or `JSON` where it begins with a brace.
+        language: &'static str,
         /// Where.
         place: Box<Place>,
         /// What the parser says.

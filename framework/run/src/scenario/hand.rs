@@ -6,15 +6,32 @@ use regrasp_api::HandDescription;
 use regrasp_formats::{RobotFileError, embed_hand};
 use regrasp_hands::{UrdfHand, UrdfOptions, UrdfReport, read_urdf};
 use regrasp_world::ChainHand;
+use schemars::JsonSchema;
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// A hand that was built and checked.
-pub(super) struct LoadedHand {
+pub struct LoadedHand {
+    /// Its kinematics.
     pub hand: ChainHand,
     /// With all meshes inside.
     pub description: HandDescription,
     /// What a user should know of how the file was understood.
     pub remarks: Vec<String>,
+}
+
+/// A hand by itself.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct HandAlone {
+    hand: HandChoice,
+}
+
+/// A hand by itself: `text` is the table `hand` of a scenario under that key, as JSON or TOML; files are looked for in `folder`.
+pub fn load_hand(text: &str, folder: &Path) -> Result<LoadedHand, ScenarioError> {
+    let document = Document::parse("hand", text)?;
+    let HandAlone { hand } = document.read()?;
+    load(&document, &hand, folder)
 }
 
 /// The hand that the scenario names; files are looked for in `folder`.

@@ -7,23 +7,27 @@ mod document;
 mod error;
 mod file;
 mod hand;
+mod json;
 mod library;
 
 pub use error::*;
 pub use file::*;
+pub use hand::{LoadedHand, load_hand};
 pub use library::*;
 
-pub use document::{Document, key_path};
+pub use document::{Document, is_json, key_path};
 use regrasp_api::{HandDescription, MeshSource, ObjectDescription, ObjectModel, ObjectShape, Problem, Slot};
 use regrasp_api::{Step, near};
 use regrasp_formats::{embed_obstacles, load_mesh};
 use regrasp_host::{Choices, HostError, Registry};
 use regrasp_world::{ChainHand, check_problem, check_units, load_object, object_of_mesh};
+use serde_json::Value;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
 
 /// A checked scenario: it stands alone, with no file left to read.
+#[derive(Clone)]
 pub struct Scenario {
     /// What it is called.
     pub name: String,
@@ -70,15 +74,21 @@ pub fn load(name: &str, registry: &Registry) -> Result<Scenario, ScenarioError> 
     }
     let text = read(path).map_err(|error| with_hint(error, path))?;
     // The likeliest mistake: what a plan was made of, and the plan, are easily mixed up.
-    if text.trim_start().starts_with('{') {
+    if is_plan(&text) {
         let cause =
-            "it is JSON, and a scenario is TOML; plan files are for `verify`, `view`, `export` and `replay`";
+            "it is a plan, not a scenario; plan files are for `verify`, `view`, `export` and `replay`";
         return Err(ScenarioError::Unreadable { place: Place::file(name), cause: cause.into() });
     }
     from_text(name, &text, path.parent().unwrap_or(Path::new("")), registry)
 }
 
-/// Reads a scenario from TOML text; `file` is what messages call it, `folder` where the files that it names are looked for.
+/// Whether a text is a plan file's.
+fn is_plan(text: &str) -> bool {
+    let format = |value: Value| value.get("format").and_then(Value::as_str) == Some("regrasp-plan");
+    is_json(text) && serde_json::from_str(text).is_ok_and(format)
+}
+
+/// Reads a scenario from TOML or JSON text; `file` is what messages call it, `folder` where the files that it names are looked for.
 pub fn from_text(
     file: &str,
     text: &str,

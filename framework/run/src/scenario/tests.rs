@@ -109,7 +109,43 @@ fn files_that_cannot_be_read_are_named() {
     let path = folder.path().join("plan.json");
     fs::write(&path, "{\"format\": \"regrasp-plan\"}").unwrap();
     let message = load(path.to_str().unwrap(), &registry()).err().unwrap().to_string();
-    assert_says(&message, &["it is JSON, and a scenario is TOML", "`verify`", "plan.json"]);
+    assert_says(&message, &["it is a plan, not a scenario", "`verify`", "plan.json"]);
+}
+
+/// The built-in scenario `sphere` as JSON.
+fn sphere_as_json() -> String {
+    let table: toml::Table = toml::from_str(find(SCENARIOS, "sphere").unwrap().text).unwrap();
+    serde_json::to_string_pretty(&table).unwrap()
+}
+
+#[test]
+fn json_is_the_same_tree_as_toml() {
+    let from_json = read_text(&sphere_as_json()).unwrap_or_else(|error| panic!("{error}"));
+    let from_toml = sphere_with("[object]", "[object]").unwrap();
+    assert_eq!(from_json.problem, from_toml.problem);
+    assert_eq!(from_json.choices, from_toml.choices);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sphere.json");
+    fs::write(&path, sphere_as_json()).unwrap();
+    assert_eq!(load(path.to_str().unwrap(), &registry()).unwrap().problem, from_toml.problem);
+}
+
+#[test]
+fn json_has_the_errors_of_toml_with_their_lines() {
+    let text = sphere_as_json();
+    let refused = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from} is not in the text");
+        read_text(&text.replace(from, to)).err().expect("the change must be refused").to_string()
+    };
+    let line = text.lines().position(|line| line.contains("\"friction\"")).unwrap() + 1;
+    let at = format!("mine.toml:{line}");
+    assert_says(&refused("\"friction\": 0.8", "\"friction\": -0.8"), &["-0.8 is outside 0..=10", &at]);
+    assert_says(
+        &refused("\"friction\"", "\"fricton\""),
+        &["did you mean `friction`?", "`object.fricton`", &at],
+    );
+    assert_says(&refused("\"friction\": 0.8", "\"friction\": NaN"), &["not valid JSON", &at]);
+    assert_says(&refused("\"friction\": 0.8", "\"friction\": 1e999"), &["not valid JSON", &at]);
 }
 
 #[test]

@@ -1,20 +1,19 @@
-//! What a page shows beside the plan itself.
+//! What a page shows beside the plan itself, and places of a plan in words.
 
-use crate::verify::place_text;
-use regrasp::api::{BodyPair, EdgeKind, Hand, NodeId, Problem};
-use regrasp::plan::{Criterion, Plan, state_record};
-use regrasp::planner::{EdgeRecord, End, Fate, GraphRecord};
-use regrasp::verify::{Check, StateFigures};
-use regrasp::view::{CheckRow, Extras, GraphEdge, GraphNode, GraphPicture, StateCurves};
+use crate::api::{BodyPair, EdgeKind, Hand, NodeId, Problem};
+use crate::plan::{Criterion, Place, Plan, state_record};
+use crate::planner::{EdgeRecord, End, Fate, GraphRecord};
+use crate::verify::{Check, StateFigures};
+use crate::view::{CheckRow, Extras, GraphEdge, GraphNode, GraphPicture, StateCurves};
 
 /// What the verifier knows of a plan.
 pub fn of_plan(plan: &Plan) -> Extras {
     let problem = &plan.scenario.problem;
-    let verdict = regrasp::verify::verify(plan);
+    let verdict = crate::verify::verify(plan);
     Extras {
         checks: verdict.checks.iter().map(|check| check_row(check, problem)).collect(),
         // A plan without sense has no figures; its failed checks say why.
-        curves: regrasp::verify::series(plan).ok().map(|figures| curves(plan, &figures.concat())),
+        curves: crate::verify::series(plan).ok().map(|figures| curves(plan, &figures.concat())),
         ..Extras::default()
     }
 }
@@ -86,4 +85,25 @@ fn graph_edge(edge: &EdgeRecord) -> GraphEdge {
             Fate::Used => "used",
         },
     }
+}
+
+/// A place in a plan in words, fingers and obstacles by the names that the problem gives them.
+pub fn place_text(place: &Place, problem: &Problem) -> String {
+    let part = |name: &str, index: Option<usize>| index.map(|index| format!("{name} {index}"));
+    let parts = [
+        part("goal", place.goal),
+        part("segment", place.segment),
+        part("state", place.state),
+        place.time.map(|time| format!("{time:.2} s")),
+        place.finger.map(|finger| finger_name(finger, problem)),
+        part("joint", place.joint),
+        place.pair.map(|(a, b)| format!("{} and {}", problem.name_of(a), problem.name_of(b))),
+        place.note.clone(),
+    ];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+fn finger_name(finger: usize, problem: &Problem) -> String {
+    let named = problem.hand.finger.get(finger).map(|finger| format!("finger `{}`", finger.name));
+    named.unwrap_or_else(|| format!("finger {finger}"))
 }

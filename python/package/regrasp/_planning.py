@@ -1,0 +1,200 @@
+"""``plan``: from a scenario to a verified plan."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any, Literal
+
+from . import _regrasp
+from ._errors import NoPlan
+from ._plan import Plan, Verdict, refused
+from ._scenario import Scenario
+
+logger = logging.getLogger("regrasp")
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is.
+
+    Attributes
+    ----------
+    stage : str
+        ``search`` or ``smoothing``.
+    goal : int
+        The goal that is searched for, counted from 0.
+    nodes, components : int
+        Of the manipulation graph, while searching.
+    segments : int
+        Of the motion, while smoothing.
+    """
+
+    stage: Literal["search", "smoothing"]
+    goal: int = 0
+    nodes: int = 0
+    components: int = 0
+    segments: int = 0
+
+
+Callback = Callable[[Progress], object]
+
+
+def plan(
+    scenario: Scenario | Mapping[str, Any] | str | os.PathLike[str],
+    *,
+    seed: int = 0,
+    threads: int = 1,
+    time_limit: float | None = None,
+    max_nodes: int | None = None,
+    use: Mapping[str, Any] | None = None,
+    settings: Mapping[str, Any] | None = None,
+    progress: bool | Callback = False,
+) -> Plan:
+    """Plans, and verifies the plan.
+
+    The GIL is released all the while. The same scenario, settings and seed give the same plan on any number of threads.
+
+    Parameters
+    ----------
+    scenario : Scenario, dict, str or path
+        A scenario, its tree, the name of a built-in one, or a TOML or JSON file.
+    seed : int
+        Of all random choices, 0 to 2⁶⁴ - 1.
+    threads : int
+        1 to 256.
+    time_limit : float, optional
+        Seconds after which the search stops; by default when the scenario says, or never.
+    max_nodes : int, optional
+        The most nodes to generate for each goal; by default as many as the scenario says.
+    use : dict, optional
+        Slots and what fills them: a plugin's id, such as ``{"stability-test": "socp"}``.
+    settings : dict, optional
+        Settings of the plugins, such as ``{"sampler.poses": 200}``; for a class of a plugin, its own fields.
+    progress : bool or callable, optional
+        True shows a bar (by ``tqdm`` where it is installed). A callable is handed a :class:`Progress`, on this thread.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    ScenarioError
+        The scenario cannot be used; the exception says which key, and why.
+    NoPlan
+        No plan was found within the budget; the exception has rejections, advice, and the part that was reached.
+    VerificationError
+        The plan does not verify.
+    PluginError
+        A plugin is unknown, refused or failed. An exception of a plugin written in Python comes through as it is.
+    KeyboardInterrupt
+        Ctrl-C, within a tenth of a second.
+    """
+    checked = Scenario.of(scenario)
+    for remark in checked.remarks:
+        logger.info("%s", remark)
+    changes = native_changes(use, settings, time_limit, max_nodes)
+    with _Teller(progress) as tell:
+        solved = _regrasp.solve(checked.native, _whole("seed", seed), _whole("threads", threads), changes, tell)
+    return _answer(solved)
+
+
+def _whole(key: str, value: Any) -> int:
+    try:
+        return int(value.__index__())
+    except AttributeError:
+        raise TypeError(f"`{key}` must be a whole number, not {type(value).__name__}") from None
+
+
+def native_changes(
+    use: Mapping[str, Any] | None,
+    settings: Mapping[str, Any] | None,
+    time_limit: float | None,
+    max_nodes: int | None,
+) -> dict[str, Any]:
+    """What a caller changes in a scenario, as the native module takes it."""
+    split = [(*_slot_and_key(key), json.dumps(value)) for key, value in (settings or {}).items()]
+    return {
+        "uses": [(slot, str(plugin)) for slot, plugin in (use or {}).items()],
+        "settings": split,
+        "time_limit": time_limit,
+        "max_nodes": max_nodes,
+    }
+
+
+def _slot_and_key(path: str) -> tuple[str, str]:
+    """Slot and key of ``local-planner.transfer.max_slip``."""
+    parts = path.split(".")
+    size = 2 if parts[0] == "local-planner" else 1
+    return ".".join(parts[:size]), ".".join(parts[size:])
+
+
+def _answer(solved: _regrasp.Solved) -> Plan:
+    summary = json.loads(solved.summary)
+    for warning in summary["warnings"]:
+        logger.warning("%s", warning)
+    plan = None if solved.plan is None else Plan(solved.plan, summary)
+    if plan is not None and not summary["verified"]:
+        raise refused(plan, Verdict.of(summary["verdict"]))
+    if plan is None or summary["status"] != "solved":
+        raise _no_plan(summary, plan)
+    logger.info("%r, planned in %.1f ms", plan, 1e3 * summary["planning_s"])
+    return plan
+
+
+def _no_plan(summary: dict[str, Any], partial: Plan | None) -> NoPlan:
+    plugins = summary["statistics"]["plugins"]
+    rejections = {slot: figures["rejections"] for slot, figures in plugins.items() if figures["rejections"]}
+    # The command line's options are arguments here.
+    advice = summary["advice"].replace("--max-nodes", "max_nodes").replace("--time-limit", "time_limit")
+    advice = advice.replace("--seed", "seed")
+    return NoPlan(
+        f"{summary['reason']}\nto try: {advice}",
+        reason=summary["reason"],
+        stopped_by=summary["stopped_by"],
+        advice=advice,
+        rejections=rejections,
+        warnings=summary["warnings"],
+        partial=partial,
+    )
+
+
+class _Teller:
+    """Tells a callback, or a bar, how far a run is; shows itself as the native module's callback, or None."""
+
+    def __init__(self, progress: bool | Callback) -> None:
+        self._callback = progress if callable(progress) else None
+        self._bar = _bar() if progress is True else None
+
+    def __enter__(self) -> Callable[[str, int, int, int], None] | None:
+        return self._tell if self._callback or self._bar is not None else None
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+    def _tell(self, stage: str, goal: int, count: int, components: int) -> None:
+        if stage == "search":
+            news = Progress("search", goal=goal, nodes=count, components=components)
+        else:
+            news = Progress("smoothing", segments=count)
+        if self._callback:
+            self._callback(news)
+        if self._bar is not None:
+            self._bar.set_description(f"goal {goal}" if stage == "search" else stage)
+            self._bar.n = count
+            self._bar.refresh()
+
+
+def _bar() -> Any:
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        logger.info("`progress=True` shows a bar where `tqdm` is installed")
+        return None
+    return tqdm(unit=" nodes", leave=False)

@@ -1,0 +1,150 @@
+//! Hands: forward and inverse kinematics of many postures at once.
+
+use crate::errors;
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+use regrasp::api::{FingerIndex, FingerJoints, Hand as _, Vec3};
+use regrasp::run::scenario::load_hand;
+use regrasp::world::ChainHand;
+use serde_json::json;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A hand as it was understood.
+#[pyclass(frozen, module = "regrasp._regrasp")]
+pub struct Hand {
+    hand: Arc<ChainHand>,
+    notes: Vec<String>,
+}
+
+impl Hand {
+    fn finger(&self, py: Python<'_>, finger: usize) -> PyResult<FingerIndex> {
+        let count = self.hand.finger_count();
+        if finger < count {
+            return Ok(FingerIndex(finger as u8));
+        }
+        let range = format!("0..={}", count.saturating_sub(1));
+        Err(errors::argument(py, "finger", &finger.to_string(), &range))
+    }
+
+    /// Refuses columns of another number of joints.
+    fn check(&self, py: Python<'_>, finger: FingerIndex, columns: usize) -> PyResult<()> {
+        let count = self.hand.finger(finger).joints.len();
+        if columns == count {
+            return Ok(());
+        }
+        Err(errors::argument(
+            py,
+            "joints",
+            &format!("{columns} columns"),
+            &format!("{count} joints of this finger"),
+        ))
+    }
+}
+
+#[pymethods]
+impl Hand {
+    /// The hand that a scenario's `hand`, as JSON, names; files are looked for in `folder`.
+    #[staticmethod]
+    fn load(py: Python<'_>, tree: &str, folder: PathBuf) -> PyResult<Self> {
+        let loaded = py.detach(|| load_hand(tree, &folder)).map_err(|error| errors::scenario(py, &error))?;
+        Ok(Self { hand: Arc::new(loaded.hand), notes: loaded.remarks })
+    }
+
+    /// The description with everything resolved, and what a user should know of how it was understood, as JSON.
+    fn describe(&self) -> String {
+        let fingers: Vec<_> = (0..self.hand.finger_count())
+            .map(|index| {
+                let finger = FingerIndex(index as u8);
+                let model = self.hand.finger(finger);
+                json!({
+                    "name": model.name,
+                    "joints": model.joints.iter().map(|joint| &joint.name).collect::<Vec<_>>(),
+                    "lower": model.joints.iter().map(|joint| joint.lower).collect::<Vec<_>>(),
+                    "upper": model.joints.iter().map(|joint| joint.upper).collect::<Vec<_>>(),
+                    "velocity": model.joints.iter().map(|joint| joint.velocity).collect::<Vec<_>>(),
+                    "effort": model.joints.iter().map(|joint| joint.effort).collect::<Vec<_>>(),
+                    "rest": model.rest.to_vec(),
+                    "spare": model.spare,
+                    "closed_form": self.hand.is_closed_form(finger),
+                })
+            })
+            .collect();
+        let description = self.hand.description();
+        let radius = self.hand.fingertip_radius();
+        json!({"fingers": fingers, "notes": self.notes, "description": description, "fingertip_radius": radius})
+            .to_string()
+    }
+
+    /// Fingertip centres in H (n, 3) for postures (n, joints) of one finger.
+    fn fk<'py>(
+        &self,
+        py: Python<'py>,
+        finger: usize,
+        joints: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let finger = self.finger(py, finger)?;
+        let (count, columns) = joints.as_array().dim();
+        self.check(py, finger, columns)?;
+        let joints = joints.as_slice()?;
+        let centers = py.detach(|| {
+            let posture = |row: usize| FingerJoints::from_slice(&joints[row * columns..][..columns]);
+            (0..count).flat_map(|row| <[f64; 3]>::from(self.hand.tip_center(finger, &posture(row)))).collect()
+        });
+        PyArray1::from_vec(py, centers).reshape([count, 3])
+    }
+
+    /// Jacobians of the fingertip centre in H (n, 3, joints) for postures (n, joints).
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        finger: usize,
+        joints: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let finger = self.finger(py, finger)?;
+        let (count, columns) = joints.as_array().dim();
+        self.check(py, finger, columns)?;
+        let joints = joints.as_slice()?;
+        let flat = py.detach(|| {
+            let mut flat = Vec::with_capacity(count * 3 * columns);
+            for row in 0..count {
+                let posture = FingerJoints::from_slice(&joints[row * columns..][..columns]);
+                let J = self.hand.tip_kinematics(finger, &posture).J_v;
+                flat.extend((0..3).flat_map(|axis| (0..columns).map(move |joint| J[(axis, joint)])));
+            }
+            flat
+        });
+        PyArray1::from_vec(py, flat).reshape([count, 3, columns])
+    }
+
+    /// Postures (n, joints) that bring the fingertip to centres (n, 3) in H, close to `near` (n, joints); NaN where out of reach.
+    fn ik<'py>(
+        &self,
+        py: Python<'py>,
+        finger: usize,
+        centers: PyReadonlyArray2<'py, f64>,
+        near: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let finger = self.finger(py, finger)?;
+        let (count, columns) = near.as_array().dim();
+        self.check(py, finger, columns)?;
+        if centers.as_array().dim() != (count, 3) {
+            let shape = format!("shape {:?}", centers.as_array().dim());
+            return Err(errors::argument(py, "centers", &shape, &format!("({count}, 3)")));
+        }
+        let (centers, near) = (centers.as_slice()?, near.as_slice()?);
+        let found = py.detach(|| {
+            let mut found = Vec::with_capacity(count * columns);
+            for row in 0..count {
+                let p_HF = Vec3::from_column_slice(&centers[3 * row..][..3]);
+                let near = FingerJoints::from_slice(&near[row * columns..][..columns]);
+                match self.hand.inverse(finger, &p_HF, &near) {
+                    Some(joints) => found.extend_from_slice(&joints),
+                    None => found.extend(std::iter::repeat_n(f64::NAN, columns)),
+                }
+            }
+            found
+        });
+        PyArray1::from_vec(py, found).reshape([count, columns])
+    }
+}

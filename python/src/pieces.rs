@@ -1,0 +1,144 @@
+//! Grasps by themselves: force closure, margins and internal forces of many grasps at once.
+
+use crate::errors;
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use regrasp::api::{
+    CallError, Certificate, Cone, Context, FingerIndex, Grasp, GraspContact, Hint, MAX_FINGERS,
+    StabilityTest, Vec3,
+};
+use regrasp::plugins::stability_tests::{ForceClosure, ForceClosureSettings};
+
+/// Many grasps of equally many contacts, in arrays without gaps.
+struct Grasps<'a> {
+    points: &'a [f64],
+    normals: &'a [f64],
+    /// Friction and torsional radius of each contact.
+    cones: &'a [f64],
+    /// Contacts of one grasp.
+    size: usize,
+    count: usize,
+}
+
+impl Grasps<'_> {
+    fn grasp(&self, index: usize) -> Grasp<'static> {
+        let mut grasp = Grasp::new(Vec3::zeros());
+        for finger in 0..self.size {
+            let contact = index * self.size + finger;
+            let [mu, gamma] = [self.cones[2 * contact], self.cones[2 * contact + 1]];
+            grasp.push(GraspContact {
+                finger: FingerIndex(finger as u8),
+                p_OC: Vec3::from_column_slice(&self.points[3 * contact..][..3]),
+                n_O: Vec3::from_column_slice(&self.normals[3 * contact..][..3]),
+                cone: Cone::Elliptic { mu, gamma },
+            });
+        }
+        grasp
+    }
+
+    fn all<T>(
+        &self,
+        py: Python<'_>,
+        each: impl Fn(&ForceClosure, &Grasp<'_>, &mut Context<'_>) -> Result<T, CallError> + Sync,
+    ) -> PyResult<Vec<T>>
+    where
+        T: Send,
+    {
+        let answers: Result<Vec<T>, String> = py.detach(|| {
+            let test =
+                ForceClosure::new(ForceClosureSettings::default()).map_err(|error| error.to_string())?;
+            let mut context = Context::seeded(0);
+            let answer =
+                |index| each(&test, &self.grasp(index), &mut context).map_err(|error| error.to_string());
+            (0..self.count).map(answer).collect()
+        });
+        answers.map_err(PyRuntimeError::new_err)
+    }
+}
+
+fn grasps<'a>(
+    py: Python<'_>,
+    points: &'a PyReadonlyArray3<'_, f64>,
+    normals: &'a PyReadonlyArray3<'_, f64>,
+    cones: &'a PyReadonlyArray3<'_, f64>,
+) -> PyResult<Grasps<'a>> {
+    let (count, size, _) = points.as_array().dim();
+    let shapes = [points.as_array().dim(), normals.as_array().dim(), cones.as_array().dim()];
+    if shapes != [(count, size, 3), (count, size, 3), (count, size, 2)] {
+        let range = format!("({count}, {size}, 3), ({count}, {size}, 3), ({count}, {size}, 2)");
+        return Err(errors::argument(py, "points, normals, cones", &format!("{shapes:?}"), &range));
+    }
+    if !(1..=MAX_FINGERS).contains(&size) {
+        return Err(errors::argument(py, "contacts", &size.to_string(), &format!("1..={MAX_FINGERS}")));
+    }
+    Ok(Grasps {
+        points: points.as_slice()?,
+        normals: normals.as_slice()?,
+        cones: cones.as_slice()?,
+        size,
+        count,
+    })
+}
+
+/// Whether each grasp is force closure (n,): points and outward unit normals (n, k, 3), cones (n, k, 2).
+#[pyfunction]
+pub fn force_closure<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray3<'py, f64>,
+    normals: PyReadonlyArray3<'py, f64>,
+    cones: PyReadonlyArray3<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    let grasps = grasps(py, &points, &normals, &cones)?;
+    let verdicts = grasps
+        .all(py, |test, grasp, context| Ok(test.test(grasp, &mut Hint::default(), context)?.is_stable()))?;
+    Ok(PyArray1::from_vec(py, verdicts))
+}
+
+/// Bounds (n, 2) of the margin of each grasp; torques about `centers` (n, 3) and divided by `length`, by the grasp's own where NaN.
+#[pyfunction]
+pub fn closure_margins<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray3<'py, f64>,
+    normals: PyReadonlyArray3<'py, f64>,
+    cones: PyReadonlyArray3<'py, f64>,
+    center: Option<[f64; 3]>,
+    length: Option<f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let grasps = grasps(py, &points, &normals, &cones)?;
+    let margins = grasps.all(py, |test, grasp, context| {
+        let assessed = test.assess(grasp, length, center.map(Vec3::from), context)?;
+        Ok([assessed.margin_lower, assessed.margin_upper])
+    })?;
+    PyArray1::from_vec(py, margins.concat()).reshape([grasps.count, 2])
+}
+
+/// A force for each contact (n, k, 3), in O on the object, balanced and strictly inside the cones; NaN where there is none.
+#[pyfunction]
+pub fn internal_forces<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray3<'py, f64>,
+    normals: PyReadonlyArray3<'py, f64>,
+    cones: PyReadonlyArray3<'py, f64>,
+) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    let grasps = grasps(py, &points, &normals, &cones)?;
+    let size = grasps.size;
+    let forces = grasps.all(py, |test, grasp, context| {
+        Ok(match test.assess(grasp, None, None, context)?.certificate {
+            Certificate::InternalForce { forces_O, .. } => {
+                forces_O.iter().flat_map(|force| force.iter().copied()).collect()
+            }
+            _ => vec![f64::NAN; 3 * size],
+        })
+    })?;
+    PyArray1::from_vec(py, forces.concat()).reshape([grasps.count, size, 3])
+}
+
+/// Refuses arrays that are not (n, 3), and gives their numbers.
+pub fn triples<'a>(py: Python<'_>, key: &str, array: &'a PyReadonlyArray2<'_, f64>) -> PyResult<&'a [f64]> {
+    if array.as_array().dim().1 == 3 {
+        return Ok(array.as_slice()?);
+    }
+    let shape = format!("shape {:?}", array.as_array().dim());
+    Err(errors::argument(py, key, &shape, "(any, 3)"))
+}

@@ -1,0 +1,107 @@
+//! Plans.
+
+use crate::table::{spans, table};
+use crate::watch::{Watch, beside};
+use crate::{errors, table::Table};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use regrasp::plan::{self, SegmentName};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A plan as its file holds it.
+#[pyclass(frozen, module = "regrasp._regrasp")]
+pub struct Plan(Arc<plan::Plan>);
+
+impl Plan {
+    /// A plan for Python.
+    pub fn new(plan: plan::Plan) -> Self {
+        Self(Arc::new(plan))
+    }
+}
+
+#[pymethods]
+impl Plan {
+    /// Reads a plan file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let plan = py.detach(|| plan::read(&path));
+        plan.map(Self::new).map_err(|error| errors::plan_file(py, &error))
+    }
+
+    /// A plan from the text of its file; `name` is what messages call it.
+    #[staticmethod]
+    fn parse(py: Python<'_>, text: &str, name: &str) -> PyResult<Self> {
+        let plan = py.detach(|| plan::from_json(text.as_bytes(), Path::new(name)));
+        plan.map(Self::new).map_err(|error| errors::plan_file(py, &error))
+    }
+
+    /// Writes the plan file.
+    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| plan::write(&path, &self.0)).map_err(|error| errors::plan_file(py, &error))
+    }
+
+    /// The text of the plan file.
+    fn text(&self, py: Python<'_>) -> PyResult<String> {
+        let mut text = Vec::new();
+        py.detach(|| plan::write_json(&*self.0, &mut text))?;
+        String::from_utf8(text).map_err(|error| errors::plan_file(py, &error))
+    }
+
+    /// Everything but the segments, as JSON.
+    fn head(&self) -> String {
+        let plan = &self.0;
+        json!({
+            "version": plan.version,
+            "seed": plan.seed,
+            "versions": plan.versions,
+            "claims": plan.claims,
+            "scenario": plan.scenario,
+            "goals_reached": plan.goals_reached,
+            "stopped_by": plan.stopped_by,
+            "statistics": plan.statistics,
+            "certificate": plan.certificate,
+        })
+        .to_string()
+    }
+
+    /// For each segment its kind, the finger that moves, and the numbers of its first and last state.
+    fn segments(&self) -> Vec<(&'static str, Option<u8>, usize, usize)> {
+        let kind = |name| match name {
+            SegmentName::Transfer => "transfer",
+            SegmentName::Regrasp => "regrasp",
+        };
+        let segments = self.0.segments.iter().zip(spans(&self.0));
+        segments.map(|(segment, (first, last))| (kind(segment.kind), segment.finger, first, last)).collect()
+    }
+
+    /// The states as arrays: `time` (S), `pose` (S, 7), `joints` (S, J), `contact` (S, F, 3, 3).
+    fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let table = py.detach(|| table(&self.0)).map_err(|error| errors::plan_file(py, &error))?;
+        let Table { states, fingers, joints, time, pose, q, contact } = table;
+        let arrays = PyDict::new(py);
+        arrays.set_item("time", PyArray1::from_vec(py, time))?;
+        arrays.set_item("pose", PyArray1::from_vec(py, pose).reshape([states, 7])?)?;
+        arrays.set_item("joints", PyArray1::from_vec(py, q).reshape([states, joints])?)?;
+        arrays.set_item("contact", PyArray1::from_vec(py, contact).reshape([states, fingers, 3, 3])?)?;
+        Ok(arrays)
+    }
+
+    /// The verifier's verdict, as JSON.
+    fn verify(&self, py: Python<'_>) -> PyResult<String> {
+        let plan = Arc::clone(&self.0);
+        let verdict = beside(py, &Watch::start(None), None, move || regrasp::verify::verify(&plan))?;
+        Ok(json!(verdict).to_string())
+    }
+
+    /// The page that plays the plan, as HTML.
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        let plan = Arc::clone(&self.0);
+        let page = beside(py, &Watch::start(None), None, move || {
+            regrasp::view::page(&plan, &regrasp::page::of_plan(&plan)).map_err(|error| error.to_string())
+        })?;
+        page.map_err(|reason| errors::plan_file(py, &reason))
+    }
+}

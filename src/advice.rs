@@ -1,0 +1,58 @@
+//! What to try where a run found no plan.
+
+use crate::api::{Reason, Slot};
+use crate::plan::{Statistics, StoppedBy};
+use crate::planner::Stuck;
+use crate::run::Run;
+
+/// What is worth trying after a run that is not solved, from where it got stuck and what it rejected most; options of the command
+/// line stand in backquotes.
+pub fn advice(run: &Run) -> String {
+    let outcome = &run.outcome;
+    let cause = most_frequent(&outcome.statistics);
+    let place = match outcome.stuck {
+        Some(Stuck::StartGrasp) => "the start pose",
+        _ => "the goal pose",
+    };
+    match (outcome.stuck, cause) {
+        (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), Some(Reason::Reach | Reason::Limits)) => {
+            format!("most grasps are out of reach: move {place} closer to the hand")
+        }
+        (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), Some(Reason::Collision | Reason::Retreat)) => format!(
+            "most grasps collide: move {place} away from palm and obstacles, or lower `limits.resolution.clearance`"
+        ),
+        (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), _) => {
+            format!("change {place}, or raise the friction")
+        }
+        _ if run.stopped_by == Some(StoppedBy::MaxNodes) && mostly_collides(&outcome.statistics) => {
+            "most motions collide: look whether palm, obstacles and fingers leave a way; if they do, raise `--max-nodes` or add a goal \
+             half way"
+                .into()
+        }
+        _ => format!("{}, try another `--seed`, or add a goal half way", more_budget(run.stopped_by)),
+    }
+}
+
+/// How to raise the budget that ended the run.
+fn more_budget(stopped_by: Option<StoppedBy>) -> &'static str {
+    match stopped_by {
+        Some(StoppedBy::MaxNodes) => "raise `--max-nodes`",
+        Some(StoppedBy::TimeLimit) => "raise `--time-limit`",
+        _ => "give it more time",
+    }
+}
+
+fn most_frequent(statistics: &Statistics) -> Option<Reason> {
+    let sampler = statistics.plugins.get(&Slot::Sampler)?;
+    sampler.rejections.iter().max_by_key(|&(_, count)| count).map(|(&reason, _)| reason)
+}
+
+/// Whether more than half of what the local planners refused collided.
+fn mostly_collides(statistics: &Statistics) -> bool {
+    let planners = [Slot::GraspPlanner, Slot::TransferPlanner, Slot::RegraspPlanner];
+    let refused = planners.iter().filter_map(|slot| statistics.plugins.get(slot)).map(|p| &p.rejections);
+    let (all, collided) = refused.fold((0, 0), |(all, collided), counts| {
+        (all + counts.values().sum::<u64>(), collided + counts.get(&Reason::Collision).copied().unwrap_or(0))
+    });
+    2 * collided > all
+}
