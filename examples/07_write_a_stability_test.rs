@@ -6,8 +6,8 @@
 //! `regrasp new-plugin stability-test doubtful` would give it a crate of its own, to be loaded at run time.
 
 use regrasp::api::{
-    Assessment, Build, CallError, Certificate, Cone, Context, Entry, Grasp, Hint, Settings, SettingsError,
-    Slot, Stability, StabilityTest, Vec3, check_range, check_settings,
+    Assessment, Build, CallError, Certificate, Cone, Context, Entry, Grasp, Hint, Settings, Slot, Stability,
+    StabilityTest, Vec3, check_settings,
 };
 use regrasp::plugins::stability_tests::{ForceClosure, ForceClosureSettings};
 use schemars::JsonSchema;
@@ -18,8 +18,8 @@ use std::error::Error;
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct DoubtfulSettings {
-    /// The share of the friction that is relied on, no unit, 0.1 to 1.
-    #[schemars(range(min = 0.1, max = 1.0))]
+    /// The share of the friction that is relied on, no unit.
+    #[schemars(range(min = 0.1, max = 1.0), extend("x-unit" = "1"))]
     share: f64,
 }
 
@@ -29,11 +29,7 @@ impl Default for DoubtfulSettings {
     }
 }
 
-impl Settings for DoubtfulSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("share", self.share, 0.1, 1.0)
-    }
-}
+impl Settings for DoubtfulSettings {}
 
 /// Force closure with a share of the friction.
 struct Doubtful {

@@ -93,9 +93,9 @@ impl<'a> Property<'a> {
         }
     }
 
-    /// The unit that the description gives, and a list's the same.
+    /// The number's unit, or that of a list's numbers.
     pub fn unit(self) -> &'a str {
-        unit(self.description()).unwrap_or_default()
+        unit(self.value).unwrap_or_default()
     }
 
     /// Range and unit.
@@ -111,10 +111,6 @@ impl<'a> Property<'a> {
     /// An example that the schema gives, as TOML.
     pub fn example(self) -> Option<String> {
         self.value.get("examples")?.get(0).map(toml_text)
-    }
-
-    fn description(self) -> &'a str {
-        self.value.get("description").and_then(Value::as_str).unwrap_or_default()
     }
 
     /// The description on one line.
@@ -163,7 +159,7 @@ mod tests {
     #[test]
     fn numbers_lists_and_words_are_told_apart() {
         let root = json!({"$defs": {"Word": {"oneOf": [{"const": "a"}, {"const": "b"}]}}});
-        let length = json!({"type": ["number", "null"], "minimum": 1e-7, "maximum": 5.0, "default": null, "description": "Length (m)."});
+        let length = json!({"type": ["number", "null"], "minimum": 1e-7, "maximum": 5.0, "default": null, "x-unit": "m"});
         let length = Property::new(&length, &root);
         assert_eq!((length.kind().as_str(), length.range_and_unit().as_str()), ("number", "1e-7..=5 m"));
         assert_eq!(length.default(), "");

@@ -1,24 +1,8 @@
 //! Settings and keys: every one is described, and the ranges that the schemas state are those that are kept.
 
-use regrasp::api::unit;
-use regrasp::api::{Entry, Limits};
+use regrasp::api::{Entry, Limits, UNIT_KEY, UNITS};
 use regrasp::host::{Registry, settings_schema};
 use serde_json::{Value, json};
-
-/// Words that tell that a number has no unit.
-const UNITLESS: &[&str] = &[
-    "no unit",
-    "oefficient",
-    "Probability",
-    "fraction",
-    "Share",
-    "share",
-    "What part",
-    "relative",
-    "in radii",
-    "of the range",
-    "a direction",
-];
 
 /// Calls `look` with the path and schema of every property below `schema`.
 fn properties<'a>(schema: &'a Value, path: &str, look: &mut impl FnMut(&str, &'a Value)) {
@@ -50,10 +34,11 @@ fn assert_described(whole: &Value, name: &str) {
         }
         let text = schema.get("description").and_then(Value::as_str).unwrap_or_default();
         assert!(text.len() > 4, "{path} has no description");
-        let told = unit(text).is_some() || UNITLESS.iter().any(|word| text.contains(word));
+        let unit = schema.get(UNIT_KEY).and_then(Value::as_str);
+        let first = unit.and_then(|unit| unit.split(';').next()).unwrap_or_default();
         assert!(
-            !is_measured(schema) || told,
-            "{path}: \"{text}\" names no unit; write it in parentheses, or (no unit)"
+            !is_measured(schema) || UNITS.contains(&first),
+            "{path}: {unit:?} is no unit; say `#[schemars(extend(\"x-unit\" = \"m\"))]`, or \"1\""
         );
     });
     assert!(count > 0, "{name} has no keys");

@@ -1,5 +1,6 @@
 //! The errors of the contract: what a call, a setting or the building of a plugin can fail with.
 
+use crate::Departure;
 use thiserror::Error;
 
 /// A call has no answer. "No" (unstable, no path, no sample) is not an error but an answer with its [`crate::Reason`].
@@ -36,21 +37,26 @@ pub enum CallError {
 }
 
 /// A plugin's settings are refused.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SettingsError {
-    /// Not of the settings' form: an unknown key, a wrong type.
+    /// Not JSON, or not of a form that serde reads.
     #[error("{0}")]
     Form(String),
-    /// A value outside its range.
-    #[error("`{key}` = {value} is outside {range}")]
-    Range {
+    /// A key, a type or a value that the schema refuses.
+    #[error(transparent)]
+    Departs(#[from] Departure),
+    /// A value that makes no sense beside the others.
+    #[error("`{key}` = {value} {reason}; {remedy}")]
+    Value {
         /// The setting's key.
         key: &'static str,
         /// The value that was given.
         value: String,
-        /// The allowed range, such as `3..=64`.
-        range: String,
+        /// What is wrong with it.
+        reason: &'static str,
+        /// What to do.
+        remedy: &'static str,
     },
     /// The plugin panicked while it looked at them.
     #[error("{0}")]
@@ -58,7 +64,7 @@ pub enum SettingsError {
 }
 
 /// A plugin cannot be built from these settings and parts.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum BuildError {
     /// The settings are refused.

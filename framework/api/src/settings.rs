@@ -1,23 +1,34 @@
-//! Settings of plugins: plain structs that check themselves.
+//! Settings of plugins: plain structs whose schema says what they may be.
 
-use crate::SettingsError;
+use crate::{SettingsError, check_schema};
 use serde::{Serialize, de::DeserializeOwned};
+use serde_json::Value;
 
 /// A plugin's settings: a plain struct with `#[serde(deny_unknown_fields, default)]`.
+///
+/// A number's range stands in its schema, `#[schemars(range(min = 0.1, max = 1.0))]`, and its unit beside it,
+/// `extend("x-unit" = "m")` ("1" where it has none). Checks, messages, tables and the book take both from there.
 pub trait Settings: Serialize + DeserializeOwned + schemars::JsonSchema + Default {
-    /// Checks every value against its range.
-    fn validate(&self) -> Result<(), SettingsError>;
+    /// Checks what the schema cannot say: how values depend on one another.
+    fn check_further(&self) -> Result<(), SettingsError> {
+        Ok(())
+    }
+
+    /// Checks every value: against the schema first.
+    fn validate(&self) -> Result<(), SettingsError> {
+        let value = serde_json::to_value(self).map_err(|error| SettingsError::Form(error.to_string()))?;
+        check_schema(&value, schemars::schema_for!(Self).as_value())?;
+        self.check_further()
+    }
 
     /// Reads and checks settings from JSON text; the empty text stands for the defaults.
     fn from_json(text: &str) -> Result<Self, SettingsError> {
         let text = if text.trim().is_empty() { "{}" } else { text };
-        // serde would read a list as the fields in their order.
-        if !text.trim_start().starts_with('{') {
-            return Err(SettingsError::Form("settings are a table of keys and values".into()));
-        }
-        let settings: Self =
-            serde_json::from_str(text).map_err(|error| SettingsError::Form(error.to_string()))?;
-        settings.validate()?;
+        let form = |error: serde_json::Error| SettingsError::Form(error.to_string());
+        let value: Value = serde_json::from_str(text).map_err(form)?;
+        check_schema(&value, schemars::schema_for!(Self).as_value())?;
+        let settings: Self = serde_json::from_value(value).map_err(form)?;
+        settings.check_further()?;
         Ok(settings)
     }
 
@@ -32,39 +43,34 @@ pub trait Settings: Serialize + DeserializeOwned + schemars::JsonSchema + Defaul
 #[serde(deny_unknown_fields, default)]
 pub struct NoSettings {}
 
-impl Settings for NoSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        Ok(())
-    }
-}
-
-/// Refuses a number outside `low..=high`, and NaN.
-pub fn check_range(key: &'static str, value: f64, low: f64, high: f64) -> Result<(), SettingsError> {
-    if (low..=high).contains(&value) {
-        return Ok(());
-    }
-    Err(SettingsError::Range { key, value: value.to_string(), range: format!("{low}..={high}") })
-}
-
-/// Refuses a count outside `low..=high`.
-pub fn check_count(key: &'static str, value: usize, low: usize, high: usize) -> Result<(), SettingsError> {
-    if (low..=high).contains(&value) {
-        return Ok(());
-    }
-    Err(SettingsError::Range { key, value: value.to_string(), range: format!("{low}..={high}") })
-}
+impl Settings for NoSettings {}
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    #[derive(Debug, Default, Serialize, serde::Deserialize, schemars::JsonSchema)]
+    #[serde(deny_unknown_fields, default)]
+    struct Slide {
+        #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "m"))]
+        length: f64,
+        #[schemars(range(min = 3, max = 64))]
+        edges: Option<usize>,
+    }
+
+    impl Settings for Slide {}
+
+    fn refusal(slide: &Slide) -> String {
+        slide.validate().unwrap_err().to_string()
+    }
+
     #[test]
     fn ranges_refuse_what_is_outside_and_nan() {
-        assert!(check_range("mu", 0.5, 0.0, 1.0).is_ok());
-        let error = check_range("mu", 1.5, 0.0, 1.0).unwrap_err();
-        assert_eq!(error.to_string(), "`mu` = 1.5 is outside 0..=1");
-        assert!(check_range("mu", f64::NAN, 0.0, 1.0).is_err());
-        assert!(check_count("edges", 2, 3, 64).is_err());
+        assert!(Slide { length: 0.5, edges: Some(3) }.validate().is_ok());
+        let long = Slide { length: 1.5, edges: None };
+        assert_eq!(refusal(&long), "`length` = 1.5 is outside 0..=1 m");
+        assert_eq!(refusal(&Slide { length: f64::NAN, edges: None }), "`length`: null is not a number");
+        assert_eq!(refusal(&Slide { length: 0.0, edges: Some(2) }), "`edges` = 2 is outside 3..=64");
     }
 
     #[test]
@@ -72,6 +78,6 @@ mod tests {
         assert!(NoSettings::from_json("").is_ok());
         let error = NoSettings::from_json(r#"{"edges": 3}"#).unwrap_err().to_string();
         assert!(error.contains("edges"), "{error}");
-        assert!(NoSettings::from_json("[1]").is_err());
+        assert_eq!(NoSettings::from_json("[1]").unwrap_err().to_string(), "a list is not a table");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::law::{Law, Subject};
 use crate::report::{Fault, Finding, broken, ensure};
-use regrasp_api::{Build, BuildError, Entry, Parts, SettingsError};
+use regrasp_api::{Build, BuildError, Departure, Entry, Fault as Refusal, Parts, SettingsError};
 use serde_json::{Map, Value, json};
 
 pub(crate) const LAWS: &[Law] = &[
@@ -111,14 +111,16 @@ fn ranges(subject: &Subject<'_>) -> Finding {
 
 /// The range that a refusal states is the one that is kept: its ends are accepted, what lies beyond is not.
 fn edges(subject: &Subject<'_>, key: &str, number: Number, error: &SettingsError) -> Finding {
-    let SettingsError::Range { key: named, range, .. } = error else { return Ok(()) };
-    ensure(*named == key, || format!("`{key}` is refused with a message about `{named}`"))?;
-    let Some((low, high)) = range.split_once("..=") else { return Ok(()) };
-    let (Ok(low), Ok(high)) = (low.trim().parse::<f64>(), high.trim().parse::<f64>()) else { return Ok(()) };
+    let SettingsError::Departs(Departure { path, fault: Refusal::Range { range, .. } }) = error else {
+        return Ok(());
+    };
+    ensure(path.to_string() == key, || format!("`{key}` is refused with a message about `{path}`"))?;
+    let (Some(low), Some(high)) = (range.low, range.high) else { return Ok(()) };
     for edge in [low, high] {
         let refused = with(subject, key, &number.value(edge));
         // Another setting's default may rule out this end; that is another message.
-        let own = matches!(&refused, Err(SettingsError::Range { key: named, .. }) if *named == key);
+        let own =
+            matches!(&refused, Err(SettingsError::Departs(departure)) if departure.path.to_string() == key);
         ensure(!own, || format!("refuses `{key}` = {edge}, though the range is {range}"))?;
     }
     for beyond in number.beyond(low, high) {

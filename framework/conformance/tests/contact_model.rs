@@ -108,9 +108,11 @@ fn each_liar_fails_its_check_and_no_other() {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct Numbers {
-    /// A length (m), 0.001 to 0.1.
+    /// A length (m).
+    #[schemars(range(min = 0.001, max = 0.1), extend("x-unit" = "m"))]
     length: f64,
-    /// A count, 3 to 64.
+    /// A count.
+    #[schemars(range(min = 3, max = 64))]
     edges: usize,
 }
 
@@ -120,18 +122,14 @@ impl Default for Numbers {
     }
 }
 
-impl Settings for Numbers {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("length", self.length, 0.001, 0.1)?;
-        check_count("edges", self.edges, 3, 64)
-    }
-}
+impl Settings for Numbers {}
 
 /// Settings that say one range and keep another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct Loose {
-    /// A length (m), 0.001 to 0.1, or so it says.
+    /// A length (m), or so it says.
+    #[schemars(range(min = 0.001, max = 0.1), extend("x-unit" = "m"))]
     length: f64,
 }
 
@@ -142,12 +140,13 @@ impl Default for Loose {
 }
 
 impl Settings for Loose {
-    fn validate(&self) -> Result<(), SettingsError> {
-        if self.length <= 0.2 {
-            check_range("length", self.length.min(0.1), 0.001, 0.1)
-        } else {
-            check_range("length", self.length, 0.001, 0.1)
-        }
+    fn from_json(text: &str) -> Result<Self, SettingsError> {
+        let text = if text.trim().is_empty() { "{}" } else { text };
+        let form = |error: serde_json::Error| SettingsError::Form(error.to_string());
+        let given: Self = serde_json::from_str(text).map_err(form)?;
+        let kept = if given.length <= 0.2 { given.length.min(0.1) } else { given.length };
+        Self { length: kept }.validate()?;
+        Ok(given)
     }
 }
 
@@ -158,36 +157,25 @@ struct Undescribed {
     on: bool,
 }
 
-impl Settings for Undescribed {
-    fn validate(&self) -> Result<(), SettingsError> {
-        Ok(())
-    }
-}
+impl Settings for Undescribed {}
 
 /// Settings that a default does not satisfy.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct NoDefault {
-    /// A length (m), 0.001 to 0.1.
+    /// A length (m).
+    #[schemars(range(min = 0.001, max = 0.1), extend("x-unit" = "m"))]
     length: f64,
 }
 
-impl Settings for NoDefault {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("length", self.length, 0.001, 0.1)
-    }
-}
+impl Settings for NoDefault {}
 
 /// Settings that ignore what they do not know.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(default)]
 struct Lenient {}
 
-impl Settings for Lenient {
-    fn validate(&self) -> Result<(), SettingsError> {
-        Ok(())
-    }
-}
+impl Settings for Lenient {}
 
 macro_rules! with_settings {
     ($settings:ty) => {

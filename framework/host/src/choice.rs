@@ -1,7 +1,7 @@
 //! Which plugin fills each slot, with which settings.
 
 use crate::{HostError, Registry};
-use regrasp_api::{Entry, Slot, check_schema, fill_defaults, unless_fault};
+use regrasp_api::{Entry, Slot, fill_defaults, unless_fault};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -99,10 +99,7 @@ fn resolve_choice(registry: &Registry, slot: Slot, choice: &Choice) -> Result<Ch
     let entry = registry.lookup(slot, &choice.id)?;
     let id = entry.id.to_owned();
     let mut settings = choice.settings.clone();
-    let schema = settings_schema(entry)?;
-    check_schema(&Value::Object(settings.clone()), &schema)
-        .map_err(|departure| HostError::Form { id: id.clone(), departure })?;
-    fill_defaults(&mut settings, &schema);
+    fill_defaults(&mut settings, &settings_schema(entry)?);
     (entry.check)(&settings_text(&settings))
         .map_err(|error| HostError::Settings { id: id.clone(), error })?;
     Ok(Choice { id, settings })

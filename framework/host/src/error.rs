@@ -1,12 +1,12 @@
 //! What can go wrong between a choice of plugins and the objects that they become.
 
 use crate::LoadError;
+use regrasp_api::did_you_mean;
 use regrasp_api::{BuildError, CallError, SettingsError, Slot};
-use regrasp_api::{Departure, did_you_mean};
 use thiserror::Error;
 
 /// A plugin cannot be found, configured or built.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum HostError {
     /// Two linked plugins share an id.
@@ -49,14 +49,6 @@ pub enum HostError {
         id: String,
         /// The slots that it fits.
         fits: Vec<String>,
-    },
-    /// A setting has an unknown key or a wrong type.
-    #[error("`{id}`: {departure}")]
-    Form {
-        /// The plugin.
-        id: String,
-        /// What is wrong, and where.
-        departure: Departure,
     },
     /// The plugin refuses its settings.
     #[error("`{id}`: {error}")]

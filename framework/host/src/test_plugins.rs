@@ -3,13 +3,14 @@
 use crate::Choices;
 use regrasp_api::{
     Build, BuildError, Built, Cone, Contact, ContactModel, Entry, FingerIndex, NoSettings, Parts, Settings,
-    SettingsError, Slot, StabilityTest, check_count, check_settings,
+    Slot, StabilityTest, check_settings,
 };
 use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AlwaysSettings {
+    #[schemars(range(min = 3, max = 64))]
     pub edges: usize,
 }
 
@@ -19,11 +20,7 @@ impl Default for AlwaysSettings {
     }
 }
 
-impl Settings for AlwaysSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("edges", self.edges, 3, 64)
-    }
-}
+impl Settings for AlwaysSettings {}
 
 struct Point;
 impl ContactModel for Point {

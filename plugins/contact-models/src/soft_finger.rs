@@ -1,8 +1,7 @@
 //! `contact-model/soft-finger`: point contact with friction and a torque about the normal.
 
 use regrasp_api::{
-    Build, Cone, Contact, ContactModel, Entry, FingerIndex, Settings, SettingsError, Slot, check_range,
-    check_settings,
+    Build, Cone, Contact, ContactModel, Entry, FingerIndex, Settings, SettingsError, Slot, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,11 +10,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SoftFingerSettings {
-    /// Torsional friction radius γ (m): the largest torque about the normal per newton of normal force; 1e-6 to 0.1.
+    /// Torsional friction radius γ (m): the largest torque about the normal per newton of normal force.
     ///
     /// A patch of radius a under uniform pressure gives γ = 2/3 μ a, under Hertz's pressure 3π/16 μ a. The default 0.002
     /// is a neutral choice: what a soft tip with a patch of 4 mm radius and μ = 0.8 transmits.
-    #[schemars(range(min = 1e-6, max = 0.1))]
+    #[schemars(range(min = 1e-6, max = 0.1), extend("x-unit" = "m"))]
     pub gamma: f64,
 }
 
@@ -25,11 +24,7 @@ impl Default for SoftFingerSettings {
     }
 }
 
-impl Settings for SoftFingerSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("gamma", self.gamma, 1e-6, 0.1)
-    }
-}
+impl Settings for SoftFingerSettings {}
 
 /// Soft finger: friction forces and a torque about the normal that share one ellipsoid, `|f_t|²/μ² + m²/γ² ≤ f_n²`.
 ///

@@ -17,7 +17,7 @@
 use crate::nearest::{ends, nearest_in, nodes};
 use regrasp_api::{
     Action, Build, CallError, ComponentId, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, NodeId,
-    Settings, SettingsError, Slot, Vicinity, check_range, check_settings, inventory,
+    Settings, SettingsError, Slot, Vicinity, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -25,11 +25,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BidirectionalSettings {
-    /// Probability, in 0..=1, that the node nearest to the other tree's random node is extended, not a random one.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// Probability that the node nearest to the other tree's random node is extended, not a random one.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub greed: f64,
-    /// Probability, in 0..=1, of a sample anywhere in place of one near a tree.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// Probability of a sample anywhere in place of one near a tree.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub anywhere: f64,
 }
 
@@ -40,12 +40,7 @@ impl Default for BidirectionalSettings {
     }
 }
 
-impl Settings for BidirectionalSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("greed", self.greed, 0.0, 1.0)?;
-        check_range("anywhere", self.anywhere, 0.0, 1.0)
-    }
-}
+impl Settings for BidirectionalSettings {}
 
 /// Grows a tree from the start and one from the goals.
 #[derive(Clone, Copy, Debug)]

@@ -16,7 +16,7 @@
 use crate::nearest::{join_ends, untried_pair};
 use regrasp_api::{
     Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, Settings,
-    SettingsError, Slot, check_count, check_settings, inventory,
+    SettingsError, Slot, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ConnectFirstSettings {
-    /// Nearest nodes of other components that a node is tried to be connected with, 1..=1000.
+    /// Nearest nodes of other components that a node is tried to be connected with.
     #[schemars(range(min = 1, max = 1000))]
     pub neighbours: usize,
 }
@@ -36,11 +36,7 @@ impl Default for ConnectFirstSettings {
     }
 }
 
-impl Settings for ConnectFirstSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("neighbours", self.neighbours, 1, 1000)
-    }
-}
+impl Settings for ConnectFirstSettings {}
 
 /// Explores only when nothing is left to connect.
 #[derive(Clone, Copy, Debug)]

@@ -16,7 +16,7 @@
 use crate::nearest::{join_ends, untried_pair};
 use regrasp_api::{
     Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, Settings,
-    SettingsError, Slot, check_count, check_range, check_settings, inventory,
+    SettingsError, Slot, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -24,13 +24,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ExploreFirstSettings {
-    /// Size of the graph, in nodes, at which exploring ends, 0..=100000.
+    /// Size of the graph, in nodes, at which exploring ends.
     #[schemars(range(min = 0, max = 100_000))]
     pub nodes: usize,
-    /// Share of the budget of nodes after which exploring ends at the latest, in 0..=1.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// Share of the budget of nodes after which exploring ends at the latest.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub fraction: f64,
-    /// Nearest nodes of other components that a node is tried to be connected with, 1..=1000.
+    /// Nearest nodes of other components that a node is tried to be connected with.
     #[schemars(range(min = 1, max = 1000))]
     pub neighbours: usize,
 }
@@ -42,13 +42,7 @@ impl Default for ExploreFirstSettings {
     }
 }
 
-impl Settings for ExploreFirstSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("nodes", self.nodes, 0, 100_000)?;
-        check_range("fraction", self.fraction, 0.0, 1.0)?;
-        check_count("neighbours", self.neighbours, 1, 1000)
-    }
-}
+impl Settings for ExploreFirstSettings {}
 
 /// Explores up to a size of the graph, then connects.
 #[derive(Clone, Copy, Debug)]

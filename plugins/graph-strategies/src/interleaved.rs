@@ -12,7 +12,7 @@
 use crate::nearest::{join_ends, nearest_of_each_component};
 use regrasp_api::{
     Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, NodeId, Settings,
-    SettingsError, Slot, check_range, check_settings, inventory,
+    SettingsError, Slot, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -20,14 +20,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct InterleavedSettings {
-    /// Probability of α = 1 for an empty graph, in 0..=1.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// Probability of α = 1 for an empty graph.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub start: f64,
-    /// Probability of α = 1 for a large graph, in 0..=1.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// Probability of α = 1 for a large graph.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub end: f64,
-    /// Number of nodes after which 63 % of the way from `start` to `end` is made (no unit), 0.1..=1e6.
-    #[schemars(range(min = 0.1, max = 1e6))]
+    /// Number of nodes after which 63 % of the way from `start` to `end` is made (no unit).
+    #[schemars(range(min = 0.1, max = 1e6), extend("x-unit" = "1"))]
     pub growth: f64,
 }
 
@@ -38,13 +38,7 @@ impl Default for InterleavedSettings {
     }
 }
 
-impl Settings for InterleavedSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("start", self.start, 0.0, 1.0)?;
-        check_range("end", self.end, 0.0, 1.0)?;
-        check_range("growth", self.growth, 0.1, 1e6)
-    }
-}
+impl Settings for InterleavedSettings {}
 
 /// The paper's strategy.
 #[derive(Clone, Copy, Debug)]

@@ -18,7 +18,7 @@
 use crate::nearest::untried_pair;
 use regrasp_api::{
     Action, Build, CallError, Context, EdgeId, EdgeKind, EdgeVerdict, Entry, GraphStrategy, GraphView, Link,
-    NodeId, Settings, SettingsError, Slot, check_count, check_range, check_settings, inventory,
+    NodeId, Settings, SettingsError, Slot, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -29,11 +29,11 @@ const CONNECTED_NEIGHBOURS: usize = 5;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LazySettings {
-    /// Nearest nodes that a new node gets unchecked edges to, 1..=1000.
+    /// Nearest nodes that a new node gets unchecked edges to.
     #[schemars(range(min = 1, max = 1000))]
     pub neighbours: usize,
-    /// Probability, in 0..=1, that while start and goal are apart two components are tried by transfer and regrasps.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// Probability that while start and goal are apart two components are tried by transfer and regrasps.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub connect: f64,
 }
 
@@ -44,12 +44,7 @@ impl Default for LazySettings {
     }
 }
 
-impl Settings for LazySettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("neighbours", self.neighbours, 1, 1000)?;
-        check_range("connect", self.connect, 0.0, 1.0)
-    }
-}
+impl Settings for LazySettings {}
 
 /// Checks edges only when a path uses them.
 #[derive(Clone, Copy, Debug)]

@@ -235,7 +235,9 @@ fn bidirectional_draws_anywhere_as_often_as_it_is_told() {
 #[test]
 fn settings_are_refused_beyond_their_ranges() {
     let range = |key: &str, error: SettingsError| {
-        assert!(matches!(&error, SettingsError::Range { key: named, .. } if *named == key), "{error}");
+        let SettingsError::Departs(departure) = error else { panic!("{error}") };
+        assert_eq!(departure.path.to_string(), key);
+        assert!(matches!(departure.fault, Fault::Range { .. }), "{departure}");
     };
     range("start", InterleavedSettings { start: -0.1, ..Default::default() }.validate().unwrap_err());
     range("growth", InterleavedSettings { growth: 0.0, ..Default::default() }.validate().unwrap_err());

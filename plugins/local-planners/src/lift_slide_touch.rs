@@ -16,7 +16,7 @@ use crate::common::Levers;
 use crate::regrasp::{NoDetour, Regrasping, SLOT};
 use regrasp_api::{
     Build, CallError, Configuration, Context, Entry, Hand, LocalPlanner, Path, Reached, Settings,
-    SettingsError, Target, Task, check_count, check_settings,
+    SettingsError, Target, Task, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -27,7 +27,7 @@ const ID: &str = "local-planner/lift-slide-touch";
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LiftSlideTouchSettings {
-    /// How many heights are tried at each end, evenly from the task's lift height down to its least retreat height, 1 to 16. Default:
+    /// How many heights are tried at each end, evenly from the task's lift height down to its least retreat height. Default:
     /// these two, as `local-planner/rrt`.
     #[schemars(range(min = 1, max = 16))]
     pub heights: usize,
@@ -39,11 +39,7 @@ impl Default for LiftSlideTouchSettings {
     }
 }
 
-impl Settings for LiftSlideTouchSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("heights", self.heights, 1, 16)
-    }
-}
+impl Settings for LiftSlideTouchSettings {}
 
 /// Moves one finger to a new contact or a free posture the direct way, the object resting in the grasp of the others.
 ///

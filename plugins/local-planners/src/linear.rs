@@ -3,8 +3,8 @@
 use crate::common::{Halving, bisection, refuse, with_spare, wrong_target};
 use regrasp_api::{
     Build, CallError, Configuration, Contact, Context, Entry, Hint, LocalPlanner, MAX_FINGERS, Path, Reached,
-    Reason, Settings, SettingsError, Slot, SurfacePath, Target, Task, angle_between, check_range,
-    check_settings, interpolate,
+    Reason, Settings, SettingsError, Slot, SurfacePath, Target, Task, angle_between, check_settings,
+    interpolate,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,8 +18,8 @@ const SLOT: Slot = Slot::GraspPlanner;
 #[serde(deny_unknown_fields, default)]
 pub struct LinearSettings {
     /// Largest change of a joint (rad; m where prismatic) from one state to the next: more is a jump to another branch of
-    /// the inverse kinematics. Range 0.01 to 3. Our choice: close to a stretched finger a step of 1.5 mm turns the joint by 0.3 rad.
-    #[schemars(range(min = 0.01, max = 3.0))]
+    /// the inverse kinematics. Our choice: close to a stretched finger a step of 1.5 mm turns the joint by 0.3 rad.
+    #[schemars(range(min = 0.01, max = 3.0), extend("x-unit" = "rad; m where prismatic"))]
     pub joint_jump: f64,
 }
 
@@ -29,11 +29,7 @@ impl Default for LinearSettings {
     }
 }
 
-impl Settings for LinearSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("joint_jump", self.joint_jump, 0.01, 3.0)
-    }
-}
+impl Settings for LinearSettings {}
 
 /// Joins two configurations of GS_n: the pose moves straight, every contact slides along its geodesic, inverse kinematics
 /// closes the chains, free fingers move their joints straight.

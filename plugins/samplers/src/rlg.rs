@@ -12,8 +12,7 @@ use crate::chains;
 use crate::pose::{self, PoseLaw};
 use regrasp_api::{
     Build, CallError, ClosedChainSampler, Configuration, Contact, Context, Entry, FingerIndex, FingerSet,
-    PerFinger, Pose, PoseRequest, Reason, Settings, SettingsError, Slot, Task, check_count, check_range,
-    check_settings, inventory,
+    PerFinger, Pose, PoseRequest, Reason, Settings, SettingsError, Slot, Task, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -21,17 +20,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RlgSettings {
-    /// Poses of the object that one call tries, 1..=100000.
+    /// Poses of the object that one call tries.
     #[schemars(range(min = 1, max = 100_000))]
     pub poses: usize,
-    /// Contacts that are tried for each finger at one pose, 1..=10000.
+    /// Contacts that are tried for each finger at one pose.
     #[schemars(range(min = 1, max = 10_000))]
     pub contacts: usize,
-    /// The fraction of poses drawn with any orientation, in 0..=1; the others are drawn near the motion from start to goal.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// The fraction of poses drawn with any orientation; the others are drawn near the motion from start to goal.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub anywhere: f64,
-    /// How far (degrees, 0..=180) the latter may turn away from that motion.
-    #[schemars(range(min = 0.0, max = 180.0))]
+    /// How far (degrees) the latter may turn away from that motion.
+    #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "degrees"))]
     pub spread_deg: f64,
 }
 
@@ -42,14 +41,7 @@ impl Default for RlgSettings {
     }
 }
 
-impl Settings for RlgSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("poses", self.poses, 1, 100_000)?;
-        check_count("contacts", self.contacts, 1, 10_000)?;
-        check_range("anywhere", self.anywhere, 0.0, 1.0)?;
-        check_range("spread_deg", self.spread_deg, 0.0, 180.0)
-    }
-}
+impl Settings for RlgSettings {}
 
 /// The random loop generator.
 #[derive(Clone, Copy, Debug)]

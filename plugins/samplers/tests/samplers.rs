@@ -172,7 +172,9 @@ fn a_try_is_counted_with_its_reason() {
 #[test]
 fn settings_are_refused_beyond_their_ranges() {
     let range = |key: &str, error: SettingsError| {
-        assert!(matches!(&error, SettingsError::Range { key: named, .. } if *named == key), "{error}");
+        let SettingsError::Departs(departure) = error else { panic!("{error}") };
+        assert_eq!(departure.path.to_string(), key);
+        assert!(matches!(departure.fault, Fault::Range { .. }), "{departure}");
     };
     range("poses", RlgSettings { poses: 0, ..Default::default() }.validate().unwrap_err());
     range("contacts", RlgSettings { contacts: 10_001, ..Default::default() }.validate().unwrap_err());

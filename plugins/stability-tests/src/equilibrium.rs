@@ -4,7 +4,7 @@ use crate::balance::{Balance, Balanced, Forces};
 use crate::contacts::{ScaledGrasp, Twist};
 use regrasp_api::{
     Assessment, Build, BuildError, CallError, Certificate, Context, Criterion, Entry, FingerIndex, Grasp,
-    Hint, Load, Settings, SettingsError, Slot, Stability, StabilityTest, Vec3, check_range, check_settings,
+    Hint, Load, Settings, SettingsError, Slot, Stability, StabilityTest, Vec3, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,14 +23,14 @@ const VERTICES: usize = 24;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct EquilibriumSettings {
-    /// Largest disturbing force at the centre of mass, in any direction (N), 1e-3 to 1e4, default 0.2: a light touch.
-    #[schemars(range(min = 1e-3, max = 1e4))]
+    /// Largest disturbing force at the centre of mass, in any direction (N), default 0.2: a light touch.
+    #[schemars(range(min = 1e-3, max = 1e4), extend("x-unit" = "N"))]
     pub disturbance_force: f64,
-    /// Largest disturbing torque, about any axis (N·m), 1e-6 to 1e3, default 0.002: that touch a centimetre off.
-    #[schemars(range(min = 1e-6, max = 1e3))]
+    /// Largest disturbing torque, about any axis (N·m), default 0.002: that touch a centimetre off.
+    #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "N·m"))]
     pub disturbance_torque: f64,
-    /// Largest normal force of one contact (N), 1e-2 to 1e5, default 20, what fingers of this size can press.
-    #[schemars(range(min = 1e-2, max = 1e5))]
+    /// Largest normal force of one contact (N), default 20, what fingers of this size can press.
+    #[schemars(range(min = 1e-2, max = 1e5), extend("x-unit" = "N"))]
     pub max_normal_force: f64,
 }
 
@@ -40,13 +40,7 @@ impl Default for EquilibriumSettings {
     }
 }
 
-impl Settings for EquilibriumSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("disturbance_force", self.disturbance_force, 1e-3, 1e4)?;
-        check_range("disturbance_torque", self.disturbance_torque, 1e-6, 1e3)?;
-        check_range("max_normal_force", self.max_normal_force, 1e-2, 1e5)
-    }
-}
+impl Settings for EquilibriumSettings {}
 
 /// Stable where contact forces inside the cones, with normal parts up to a bound, hold the object's weight and every disturbance of a set.
 ///

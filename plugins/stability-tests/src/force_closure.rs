@@ -7,7 +7,7 @@ use crate::spanning::span;
 use crate::wrenches::WrenchSet;
 use regrasp_api::{
     Assessment, Build, CallError, Certificate, Context, Entry, FingerIndex, Grasp, Hint, Settings,
-    SettingsError, Slot, Stability, StabilityTest, Vec3, check_range, check_settings,
+    SettingsError, Slot, Stability, StabilityTest, Vec3, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,10 +22,10 @@ const SEPARATING_TWIST: u64 = 2;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ForceClosureSettings {
-    /// Margins (no unit: Ferrari and Canny's Q1) up to this one may be left undecided, which counts as not stable; 1e-7 to 1e-3, default 1e-6.
+    /// Margins (no unit: Ferrari and Canny's Q1) up to this one may be left undecided, which counts as not stable; default 1e-6.
     ///
     /// Below 1e-7 rounding decides. A grasp with a larger margin is never refused.
-    #[schemars(range(min = 1e-7, max = 1e-3))]
+    #[schemars(range(min = 1e-7, max = 1e-3), extend("x-unit" = "1"))]
     pub undecided_margin: f64,
 }
 
@@ -35,11 +35,7 @@ impl Default for ForceClosureSettings {
     }
 }
 
-impl Settings for ForceClosureSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("undecided_margin", self.undecided_margin, 1e-7, 1e-3)
-    }
-}
+impl Settings for ForceClosureSettings {}
 
 /// Force closure, decided exactly for point contacts with and without friction, for soft fingers, with no linearised cone, and for polyhedral
 /// cones.

@@ -3,10 +3,10 @@
 use crate::closure::Frame;
 use crate::hull::{Depth, Until, depth};
 use crate::spanning::{Span, internal_force, separating_twist, span};
-use crate::wrenches::{MAX_EDGES, MIN_EDGES, Ring, WrenchSet};
+use crate::wrenches::{Ring, WrenchSet};
 use regrasp_api::{
     Assessment, Build, CallError, Certificate, Context, Entry, FingerIndex, Grasp, Hint, Settings,
-    SettingsError, Slot, Stability, StabilityTest, Vec3, check_count, check_settings,
+    SettingsError, Slot, Stability, StabilityTest, Vec3, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -19,7 +19,7 @@ const MARGIN_GAP: f64 = 0.005;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LinearisedSettings {
-    /// Edges of a cone, 3 to 64, default 8 as is usual in grasp planning; a soft finger has as many on its equator and more on the way to its poles.
+    /// Edges of a cone, default 8 as is usual in grasp planning; a soft finger has as many on its equator and more on the way to its poles.
     #[schemars(range(min = 3, max = 64))]
     pub edges: usize,
 }
@@ -30,11 +30,7 @@ impl Default for LinearisedSettings {
     }
 }
 
-impl Settings for LinearisedSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("edges", self.edges, MIN_EDGES, MAX_EDGES)
-    }
-}
+impl Settings for LinearisedSettings {}
 
 /// Force closure with every round cone replaced by m edges on its surface; cones that come as edges are taken as they are.
 ///

@@ -6,7 +6,7 @@ use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverSt
 use nalgebra::{DMatrix, DVector};
 use regrasp_api::{
     Assessment, Build, CallError, Certificate, Context, Entry, Grasp, Hint, Settings, SettingsError, Slot,
-    Stability, StabilityTest, Vec3, any_orthogonal, check_range, check_settings,
+    Stability, StabilityTest, Vec3, any_orthogonal, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,11 +17,11 @@ const ID: &str = "stability-test/socp";
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SocpSettings {
-    /// Slacks t (no unit) below this in absolute value are left undecided; 1e-9 to 0.1, default 1e-8, where the solver's sign becomes noise.
-    #[schemars(range(min = 1e-9, max = 0.1))]
+    /// Slacks t (no unit) below this in absolute value are left undecided; default 1e-8, where the solver's sign becomes noise.
+    #[schemars(range(min = 1e-9, max = 0.1), extend("x-unit" = "1"))]
     pub undecided_slack: f64,
-    /// Smallest singular value of the scaled grasp map (no unit) that counts as rank 6; 1e-12 to 0.1, default 1e-9.
-    #[schemars(range(min = 1e-12, max = 0.1))]
+    /// Smallest singular value of the scaled grasp map (no unit) that counts as rank 6; default 1e-9.
+    #[schemars(range(min = 1e-12, max = 0.1), extend("x-unit" = "1"))]
     pub rank_tolerance: f64,
 }
 
@@ -31,12 +31,7 @@ impl Default for SocpSettings {
     }
 }
 
-impl Settings for SocpSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("undecided_slack", self.undecided_slack, 1e-9, 0.1)?;
-        check_range("rank_tolerance", self.rank_tolerance, 1e-12, 0.1)
-    }
-}
+impl Settings for SocpSettings {}
 
 /// Force closure as a second-order cone program: maximise t with G f = 0, Σ f_n = 1 and f_n - t ≥ |(f_t/μ, m/γ)| at every contact.
 ///

@@ -6,10 +6,10 @@ use crate::force_closure::{ForceClosure, ForceClosureSettings};
 use crate::hull::Until;
 use crate::linearised::{hull_depth, proof, verdict};
 use crate::spanning::span;
-use crate::wrenches::{MAX_EDGES, MIN_EDGES, Ring, WrenchSet};
+use crate::wrenches::{Ring, WrenchSet};
 use regrasp_api::{
     Assessment, Build, BuildError, CallError, Certificate, Context, Entry, FingerIndex, Grasp, Hint,
-    Settings, SettingsError, Slot, Stability, StabilityTest, Vec3, check_count, check_range, check_settings,
+    Settings, SettingsError, Slot, Stability, StabilityTest, Vec3, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -33,15 +33,15 @@ pub enum Center {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct WrenchBallSettings {
-    /// The margin that a stable grasp exceeds (no unit); 0 to 1, default 0: every force closure counts.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// The margin that a stable grasp exceeds (no unit); default 0: every force closure counts.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub least_margin: f64,
-    /// Edges that replace a round cone, from inside, 3 to 64; default none: round cones as they are.
+    /// Edges that replace a round cone, from inside; default none: round cones as they are.
     #[schemars(range(min = 3, max = 64))]
     #[schemars(example = 8)]
     pub cone_edges: Option<usize>,
-    /// What torques are divided by (m), 1e-4 to 1e3; default none: the largest distance of a contact from their centroid.
-    #[schemars(range(min = 1e-4, max = 1e3))]
+    /// What torques are divided by (m); default none: the largest distance of a contact from their centroid.
+    #[schemars(range(min = 1e-4, max = 1e3), extend("x-unit" = "m"))]
     #[schemars(example = 0.03)]
     pub length: Option<f64>,
     /// The point that torques are taken about; default the contacts' centroid.
@@ -54,13 +54,7 @@ impl Default for WrenchBallSettings {
     }
 }
 
-impl Settings for WrenchBallSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("least_margin", self.least_margin, 0.0, 1.0)?;
-        self.cone_edges.map_or(Ok(()), |edges| check_count("cone_edges", edges, MIN_EDGES, MAX_EDGES))?;
-        self.length.map_or(Ok(()), |length| check_range("length", length, 1e-4, 1e3))
-    }
-}
+impl Settings for WrenchBallSettings {}
 
 /// Stable where the wrench ball's radius Q1 exceeds a bound: how large a wrench, in any direction, normal forces that add up to 1 N resist.
 ///

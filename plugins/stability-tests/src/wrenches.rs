@@ -4,10 +4,8 @@ use crate::contacts::{ScaledContact, ScaledGrasp, Twist};
 use regrasp_api::{Cone, ConeEdge, FingerIndex, Grasp, MAX_FINGERS, Vec3, tangents};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The most edges of a linearised cone.
-pub(crate) const MAX_EDGES: usize = 64;
-/// The fewest.
-pub(crate) const MIN_EDGES: usize = 3;
+/// The most edges of a linearised cone, as the schemas of the settings have it.
+const MAX_EDGES: usize = 64;
 /// Latitudes at which a soft finger's edges lie, for the most edges: both poles and sixteen steps to each from the equator.
 const MAX_LATITUDES: usize = MAX_EDGES / 2 + 1;
 
@@ -26,7 +24,7 @@ pub(crate) struct Ring {
 }
 
 impl Ring {
-    /// A ring of `count` edges, [`MIN_EDGES`] to [`MAX_EDGES`].
+    /// A ring of `count` edges, 3 to [`MAX_EDGES`].
     pub fn new(count: usize) -> Self {
         let half = ((count + 2) / 4).max(1);
         let cos_sin = |angle: f64| [angle.cos(), angle.sin()];

@@ -1,8 +1,7 @@
 //! A contact model: point contact with a friction coefficient that is trusted only in part.
 
 use regrasp_api::{
-    Build, Cone, Contact, ContactModel, Entry, FingerIndex, Settings, SettingsError, Slot, check_range,
-    check_settings,
+    Build, Cone, Contact, ContactModel, Entry, FingerIndex, Settings, SettingsError, Slot, check_settings,
 };
 use serde::{Deserialize, Serialize};
 
@@ -10,8 +9,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ScaledFrictionSettings {
-    /// The part of the friction coefficient that counts, 0.1..=1.
-    #[schemars(range(min = 0.1, max = 1.0))]
+    /// The part of the friction coefficient that counts.
+    #[schemars(range(min = 0.1, max = 1.0), extend("x-unit" = "1"))]
     pub factor: f64,
 }
 
@@ -21,11 +20,7 @@ impl Default for ScaledFrictionSettings {
     }
 }
 
-impl Settings for ScaledFrictionSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("factor", self.factor, 0.1, 1.0)
-    }
-}
+impl Settings for ScaledFrictionSettings {}
 
 /// Point contact with friction, `|f_t| ≤ factor · μ · f_n`.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use regrasp_api::{
     Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, NodeId, Settings,
-    SettingsError, Slot, check_range, check_settings,
+    SettingsError, Slot, check_settings,
 };
 use serde::{Deserialize, Serialize};
 
@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AlternateSettings {
-    /// The part of the steps (no unit) that connects two components in place of sampling, 0..=0.9.
-    #[schemars(range(min = 0.0, max = 0.9))]
+    /// The part of the steps (no unit) that connects two components in place of sampling.
+    #[schemars(range(min = 0.0, max = 0.9), extend("x-unit" = "1"))]
     pub connect: f64,
 }
 
@@ -21,11 +21,7 @@ impl Default for AlternateSettings {
     }
 }
 
-impl Settings for AlternateSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("connect", self.connect, 0.0, 0.9)
-    }
-}
+impl Settings for AlternateSettings {}
 
 /// Explores and connects at a fixed rate.
 #[derive(Clone, Copy, Debug)]

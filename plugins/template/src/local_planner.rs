@@ -3,7 +3,7 @@
 use regrasp_api::{
     Build, CallError, Configuration, Contact, Context, Entry, FingerIndex, FingerJoints, FingerSet, Hint,
     LocalPlanner, LoneFinger, Path, Reached, Reason, Settings, SettingsError, Slot, SurfacePath, Target,
-    Task, TipRule, check_range, check_settings,
+    Task, TipRule, check_settings,
 };
 use serde::{Deserialize, Serialize};
 
@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct UpOverDownSettings {
-    /// The fingertip's step as a part of the problem's `regrasp_step` (no unit), 0.05..=1.
-    #[schemars(range(min = 0.05, max = 1.0))]
+    /// The fingertip's step as a part of the problem's `regrasp_step` (no unit).
+    #[schemars(range(min = 0.05, max = 1.0), extend("x-unit" = "1"))]
     pub step: f64,
 }
 
@@ -22,11 +22,7 @@ impl Default for UpOverDownSettings {
     }
 }
 
-impl Settings for UpOverDownSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("step", self.step, 0.05, 1.0)
-    }
-}
+impl Settings for UpOverDownSettings {}
 
 /// Moves one finger: up along the normal, along the shortest path on the surface, down along the new normal; all or nothing.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 use regrasp_api::{
     Build, CallError, ClosedChainSampler, Configuration, Contact, Context, Entry, FingerIndex, FingerSet,
     PerFinger, Pose, PoseRequest, Random, Reason, Rotation, Settings, SettingsError, Slot, Task, Vec3,
-    check_count, check_settings, slerp,
+    check_settings, slerp,
 };
 use serde::{Deserialize, Serialize};
 
@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RejectionSettings {
-    /// Poses of the object that one call tries, 1..=100000.
+    /// Poses of the object that one call tries.
     #[schemars(range(min = 1, max = 100_000))]
     pub poses: usize,
-    /// Contacts that are tried for each finger at one pose, 1..=10000.
+    /// Contacts that are tried for each finger at one pose.
     #[schemars(range(min = 1, max = 10_000))]
     pub contacts: usize,
 }
@@ -25,12 +25,7 @@ impl Default for RejectionSettings {
     }
 }
 
-impl Settings for RejectionSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("poses", self.poses, 1, 100_000)?;
-        check_count("contacts", self.contacts, 1, 10_000)
-    }
-}
+impl Settings for RejectionSettings {}
 
 /// Draws until it fits.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@
 
 use regrasp_api::{
     Assessment, Build, CallError, Certificate, Cone, Context, Entry, Grasp, GraspContact, Hint, Settings,
-    SettingsError, Slot, Stability, StabilityTest, Vec3, check_range, check_settings,
+    SettingsError, Slot, Stability, StabilityTest, Vec3, check_settings,
 };
 use serde::{Deserialize, Serialize};
 
@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PressedPairSettings {
-    /// The least margin, no unit, that counts as stable, 1e-6..=0.5.
-    #[schemars(range(min = 1e-6, max = 0.5))]
+    /// The least margin, no unit, that counts as stable.
+    #[schemars(range(min = 1e-6, max = 0.5), extend("x-unit" = "1"))]
     pub least_margin: f64,
 }
 
@@ -25,11 +25,7 @@ impl Default for PressedPairSettings {
     }
 }
 
-impl Settings for PressedPairSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("least_margin", self.least_margin, 1e-6, 0.5)
-    }
-}
+impl Settings for PressedPairSettings {}
 
 /// A grasp is stable if two of its contacts press towards each other and the others stop the turn about their line.
 #[derive(Clone, Copy, Debug)]

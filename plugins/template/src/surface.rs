@@ -8,8 +8,8 @@
 //! 1997), found by Dijkstra's algorithm; with few points an edge they are some percent longer than the shortest.
 
 use regrasp_api::{
-    Build, BuildError, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings,
-    SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, check_count, check_settings,
+    Build, BuildError, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings, Slot,
+    SurfaceParam, SurfacePath, Vec3, check_settings,
 };
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
@@ -24,7 +24,7 @@ const STEP: f64 = 2e-4;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FacetsSettings {
-    /// Points that a path may cross an edge at, 1..=100; more make paths shorter and slower. Edges that are long for the object get more.
+    /// Points that a path may cross an edge at; more make paths shorter and slower. Edges that are long for the object get more.
     #[schemars(range(min = 1, max = 100))]
     pub points: usize,
 }
@@ -35,11 +35,7 @@ impl Default for FacetsSettings {
     }
 }
 
-impl Settings for FacetsSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("points", self.points, 1, 100)
-    }
-}
+impl Settings for FacetsSettings {}
 
 /// The facets of a convex object.
 pub struct Facets {

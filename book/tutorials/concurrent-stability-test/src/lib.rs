@@ -3,7 +3,7 @@
 // ANCHOR: uses
 use regrasp_api::{
     Assessment, Build, CallError, Certificate, Cone, Context, Entry, Grasp, GraspContact, Hint, Settings,
-    SettingsError, Slot, Stability, StabilityTest, Vec3, check_count, check_range, check_settings,
+    SettingsError, Slot, Stability, StabilityTest, Vec3, check_settings,
 };
 use serde::{Deserialize, Serialize};
 // ANCHOR_END: uses
@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ConcurrentSettings {
-    /// The least room, no unit, that the forces must leave in their cones, 1e-6..=0.5.
-    #[schemars(range(min = 1e-6, max = 0.5))]
+    /// The least room, no unit, that the forces must leave in their cones.
+    #[schemars(range(min = 1e-6, max = 0.5), extend("x-unit" = "1"))]
     pub least_margin: f64,
-    /// How many other points than the middle are tried, to each side of it from each contact, 0..=6.
+    /// How many other points than the middle are tried, to each side of it from each contact.
     #[schemars(range(max = 6))]
     pub leans: usize,
 }
@@ -27,12 +27,7 @@ impl Default for ConcurrentSettings {
     }
 }
 
-impl Settings for ConcurrentSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("least_margin", self.least_margin, 1e-6, 0.5)?;
-        check_count("leans", self.leans, 0, 6)
-    }
-}
+impl Settings for ConcurrentSettings {}
 
 /// A grasp is stable if three or more of its contacts can all push towards one point between them.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@
 use regrasp_api::{
     Build, CallError, ClosedChainSampler, Configuration, Contact, Context, Entry, FingerIndex, FingerJoints,
     FingerSet, PerFinger, Pose, PoseRequest, Random, Reason, Rotation, Settings, SettingsError, Slot, Task,
-    Vec3, check_count, check_settings, slerp,
+    Vec3, check_settings, slerp,
 };
 use serde::{Deserialize, Serialize};
 // ANCHOR_END: uses
@@ -14,10 +14,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FingersFirstSettings {
-    /// Poses of the object that one call tries, 1..=100000.
+    /// Poses of the object that one call tries.
     #[schemars(range(min = 1, max = 100_000))]
     pub poses: usize,
-    /// Postures that are tried for each finger at one pose, 1..=10000.
+    /// Postures that are tried for each finger at one pose.
     #[schemars(range(min = 1, max = 10_000))]
     pub postures: usize,
 }
@@ -28,12 +28,7 @@ impl Default for FingersFirstSettings {
     }
 }
 
-impl Settings for FingersFirstSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("poses", self.poses, 1, 100_000)?;
-        check_count("postures", self.postures, 1, 10_000)
-    }
-}
+impl Settings for FingersFirstSettings {}
 
 /// Fingers first, contacts after them.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 // ANCHOR: uses
 use regrasp_api::{
-    Build, Cone, Contact, ContactModel, Entry, FingerIndex, Settings, SettingsError, Slot, Vec3, check_range,
+    Build, Cone, Contact, ContactModel, Entry, FingerIndex, Settings, SettingsError, Slot, Vec3,
     check_settings,
 };
 use serde::{Deserialize, Serialize};
@@ -14,12 +14,13 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 pub struct GreasySettings {
     /// Direction of the greasy side in the object's frame; its length does not count, but must not be 0.
+    #[schemars(extend("x-unit" = "1"))]
     pub side: [f64; 3],
-    /// Points at least this far (m) along `side` from the object's origin are greasy, -1..=1.
-    #[schemars(range(min = -1.0, max = 1.0))]
+    /// Points at least this far (m) along `side` from the object's origin are greasy.
+    #[schemars(range(min = -1.0, max = 1.0), extend("x-unit" = "m"))]
     pub from: f64,
-    /// The part of the friction that grease leaves, 0..=1.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// The part of the friction that grease leaves.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub factor: f64,
 }
 
@@ -30,15 +31,16 @@ impl Default for GreasySettings {
 }
 
 impl Settings for GreasySettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        let length = Vec3::from(self.side).norm();
-        if !(length.is_finite() && length > 1e-9) {
-            let reason =
-                format!("`side` = {:?} is no direction; give one such as [1.0, 0.0, 0.0]", self.side);
-            return Err(SettingsError::Form(reason));
+    fn check_further(&self) -> Result<(), SettingsError> {
+        if Vec3::from(self.side).norm() > 1e-9 {
+            return Ok(());
         }
-        check_range("from", self.from, -1.0, 1.0)?;
-        check_range("factor", self.factor, 0.0, 1.0)
+        Err(SettingsError::Value {
+            key: "side",
+            value: format!("{:?}", self.side),
+            reason: "is no direction",
+            remedy: "give one such as [1.0, 0.0, 0.0]",
+        })
     }
 }
 // ANCHOR_END: settings

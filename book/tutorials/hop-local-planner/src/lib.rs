@@ -4,7 +4,7 @@
 use regrasp_api::{
     Build, CallError, Configuration, Contact, Context, Entry, FingerIndex, FingerJoints, FingerSet, Hint,
     LocalPlanner, LoneFinger, Path, Reached, Reason, Settings, SettingsError, Slot, Target, Task, TipRule,
-    check_count, check_range, check_settings,
+    check_settings,
 };
 use serde::{Deserialize, Serialize};
 // ANCHOR_END: uses
@@ -14,11 +14,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct HopSettings {
-    /// Heights that are tried, 1..=20: the problem's lift height, twice that, and so on.
+    /// Heights that are tried: the problem's lift height, twice that, and so on.
     #[schemars(range(min = 1, max = 20))]
     pub heights: usize,
-    /// The fingertip's step as a part of the problem's `regrasp_step`, 0.05..=1.
-    #[schemars(range(min = 0.05, max = 1.0))]
+    /// The fingertip's step as a part of the problem's `regrasp_step`.
+    #[schemars(range(min = 0.05, max = 1.0), extend("x-unit" = "1"))]
     pub step: f64,
 }
 
@@ -28,12 +28,7 @@ impl Default for HopSettings {
     }
 }
 
-impl Settings for HopSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("heights", self.heights, 1, 20)?;
-        check_range("step", self.step, 0.05, 1.0)
-    }
-}
+impl Settings for HopSettings {}
 
 /// Moves one finger: up along the normal, straight in its joints, down along the new normal; all or nothing.
 #[derive(Clone, Copy, Debug)]

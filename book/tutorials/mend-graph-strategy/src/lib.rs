@@ -3,7 +3,7 @@
 // ANCHOR: uses
 use regrasp_api::{
     Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, NodeId, Settings,
-    SettingsError, Slot, check_range, check_settings,
+    SettingsError, Slot, check_settings,
 };
 use serde::{Deserialize, Serialize};
 // ANCHOR_END: uses
@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MendSettings {
-    /// The part of the steps that samples a node although there is something to mend, 0..=0.9.
-    #[schemars(range(min = 0.0, max = 0.9))]
+    /// The part of the steps that samples a node although there is something to mend.
+    #[schemars(range(min = 0.0, max = 0.9), extend("x-unit" = "1"))]
     pub explore: f64,
-    /// How much better several small gaps are than a large one, 1..=4: the power of a gap's length that is added up along the way.
-    #[schemars(range(min = 1.0, max = 4.0))]
+    /// How much better several small gaps are than a large one: the power of a gap's length that is added up along the way.
+    #[schemars(range(min = 1.0, max = 4.0), extend("x-unit" = "1"))]
     pub power: f64,
 }
 
@@ -27,12 +27,7 @@ impl Default for MendSettings {
     }
 }
 
-impl Settings for MendSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("explore", self.explore, 0.0, 0.9)?;
-        check_range("power", self.power, 1.0, 4.0)
-    }
-}
+impl Settings for MendSettings {}
 
 /// Mends the way from start to goal, and explores where it cannot be mended.
 #[derive(Clone, Copy, Debug)]

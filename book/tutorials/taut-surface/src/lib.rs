@@ -7,8 +7,8 @@ mod geometry;
 
 use geometry::{closest_on_facet, closest_on_segment, facets, sharp_edges};
 use regrasp_api::{
-    Build, BuildError, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings,
-    SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, check_count, check_settings,
+    Build, BuildError, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings, Slot,
+    SurfaceParam, SurfacePath, Vec3, check_settings,
 };
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
@@ -23,10 +23,10 @@ const STEP: f64 = 2e-4;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TautSettings {
-    /// Points on each edge that the first path may go through, 1..=100. Edges that are long for the object get more.
+    /// Points on each edge that the first path may go through. Edges that are long for the object get more.
     #[schemars(range(min = 1, max = 100))]
     pub points: usize,
-    /// How often the whole path is pulled at most, 0..=10000.
+    /// How often the whole path is pulled at most.
     #[schemars(range(max = 10_000))]
     pub rounds: usize,
 }
@@ -37,12 +37,7 @@ impl Default for TautSettings {
     }
 }
 
-impl Settings for TautSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("points", self.points, 1, 100)?;
-        check_count("rounds", self.rounds, 0, 10_000)
-    }
-}
+impl Settings for TautSettings {}
 // ANCHOR_END: settings
 
 // ANCHOR: surface

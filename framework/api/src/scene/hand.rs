@@ -15,7 +15,7 @@ pub struct HandDescription {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub references: Vec<String>,
     /// Radius of every fingertip's ball (m).
-    #[schemars(range(min = 1e-4, max = 0.2))]
+    #[schemars(range(min = 1e-4, max = 0.2), extend("x-unit" = "m"))]
     pub fingertip_radius: f64,
     /// What touches the object: the ball itself, or a point.
     #[serde(default, skip_serializing_if = "Fingertip::is_ball")]
@@ -100,8 +100,10 @@ pub struct FingerDescription {
     pub joint: Vec<JointDescription>,
     /// Centre of the fingertip's ball in the last link's frame (m).
     #[serde(default)]
+    #[schemars(extend("x-unit" = "m"))]
     pub tip: [f64; 3],
     /// Joint positions (rad; m where prismatic) that the finger takes when it rests free of the object.
+    #[schemars(extend("x-unit" = "rad; m where prismatic"))]
     pub rest: Vec<f64>,
 }
 
@@ -118,22 +120,25 @@ pub struct JointDescription {
     #[serde(default)]
     pub origin: PoseDescription,
     /// The axis in the joint's frame (a direction, of any length).
+    #[schemars(extend("x-unit" = "1"))]
     pub axis: [f64; 3],
     /// Lowest position (rad; m where prismatic).
+    #[schemars(extend("x-unit" = "rad; m where prismatic"))]
     pub lower: f64,
     /// Highest position (rad; m where prismatic).
+    #[schemars(extend("x-unit" = "rad; m where prismatic"))]
     pub upper: f64,
     /// Largest speed (rad/s; m/s where prismatic).
     #[serde(default = "default_velocity")]
-    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0))]
+    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "rad/s; m/s where prismatic"))]
     pub velocity: f64,
     /// Largest acceleration (rad/s²; m/s² where prismatic).
     #[serde(default = "default_acceleration")]
-    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0))]
+    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "rad/s²; m/s² where prismatic"))]
     pub acceleration: f64,
     /// Largest effort (N·m; N where prismatic).
     #[serde(default = "default_effort")]
-    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0))]
+    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "N·m; N where prismatic"))]
     pub effort: f64,
     /// Which joint drives this one; absent where it moves by itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -154,12 +159,12 @@ pub struct Mimic {
     pub joint: String,
     /// By what its position is multiplied (no unit between joints of one kind).
     #[serde(default = "default_multiplier")]
-    #[schemars(range(min = -100.0, max = 100.0))]
+    #[schemars(range(min = -100.0, max = 100.0), extend("x-unit" = "1"))]
     #[schemars(example = 0.8)]
     pub multiplier: f64,
     /// What is added (rad; m where prismatic).
     #[serde(default)]
-    #[schemars(range(min = -10.0, max = 10.0))]
+    #[schemars(range(min = -10.0, max = 10.0), extend("x-unit" = "rad; m where prismatic"))]
     #[schemars(example = 0.1)]
     pub offset: f64,
 }

@@ -8,22 +8,22 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 pub struct Tolerances {
     /// Largest distance between a holding fingertip and the surface (m).
-    #[schemars(range(min = 1e-7, max = 1e-2))]
+    #[schemars(range(min = 1e-7, max = 1e-2), extend("x-unit" = "m"))]
     pub closure: f64,
     /// Largest net slip of a contact over one transfer (m).
-    #[schemars(range(min = 1e-7, max = 1e-2))]
+    #[schemars(range(min = 1e-7, max = 1e-2), extend("x-unit" = "m"))]
     pub slip: f64,
     /// Largest angle between a contact's normal and the surface's (rad).
-    #[schemars(range(min = 1e-6, max = 0.5))]
+    #[schemars(range(min = 1e-6, max = 0.5), extend("x-unit" = "rad"))]
     pub normal: f64,
     /// Least distance between bodies that may not touch (m).
-    #[schemars(range(min = 0.0, max = 0.1))]
+    #[schemars(range(min = 0.0, max = 0.1), extend("x-unit" = "m"))]
     pub clearance: f64,
     /// Largest distance of the object from a goal's position (m).
-    #[schemars(range(min = 1e-9, max = 0.1))]
+    #[schemars(range(min = 1e-9, max = 0.1), extend("x-unit" = "m"))]
     pub goal_position: f64,
     /// Largest angle of the object from a goal's orientation (rad).
-    #[schemars(range(min = 1e-9, max = 1.0))]
+    #[schemars(range(min = 1e-9, max = 1.0), extend("x-unit" = "rad"))]
     pub goal_angle: f64,
 }
 
@@ -45,37 +45,37 @@ impl Default for Tolerances {
 #[serde(deny_unknown_fields, default)]
 pub struct Resolution {
     /// Largest step of the object or a contact on a path in GS_n (m).
-    #[schemars(range(min = 1e-5, max = 0.1))]
+    #[schemars(range(min = 1e-5, max = 0.1), extend("x-unit" = "m"))]
     pub grasp_step: f64,
     /// Largest turn of the object in one step on a path in GS_n (rad); by default 2 degrees.
-    #[schemars(range(min = 1e-4, max = 1.0))]
+    #[schemars(range(min = 1e-4, max = 1.0), extend("x-unit" = "rad"))]
     pub grasp_turn: f64,
     /// Largest step of the object or a contact in a transfer (m).
-    #[schemars(range(min = 1e-5, max = 0.1))]
+    #[schemars(range(min = 1e-5, max = 0.1), extend("x-unit" = "m"))]
     pub transfer_step: f64,
     /// Largest turn of the object in one step of a transfer (rad); by default 1.5 degrees.
-    #[schemars(range(min = 1e-4, max = 1.0))]
+    #[schemars(range(min = 1e-4, max = 1.0), extend("x-unit" = "rad"))]
     pub transfer_turn: f64,
     /// Largest step of a fingertip in a regrasp (m).
-    #[schemars(range(min = 1e-5, max = 0.1))]
+    #[schemars(range(min = 1e-5, max = 0.1), extend("x-unit" = "m"))]
     pub regrasp_step: f64,
     /// Height above the surface at which a finger moves to its new contact (m).
-    #[schemars(range(min = 1e-4, max = 0.2))]
+    #[schemars(range(min = 1e-4, max = 0.2), extend("x-unit" = "m"))]
     pub lift: f64,
     /// Heights to which every holding finger must be able to retreat along its normal (m).
-    #[schemars(inner(range(min = 0.0, max = 0.2)))]
+    #[schemars(inner(range(min = 0.0, max = 0.2)), extend("x-unit" = "m"))]
     pub retreat: [f64; 2],
     /// Distance that the planner keeps between bodies that may not touch (m), beyond the tolerance.
-    #[schemars(range(min = 0.0, max = 0.05))]
+    #[schemars(range(min = 0.0, max = 0.05), extend("x-unit" = "m"))]
     pub clearance: f64,
     /// Distance that contacts keep from a sharp edge when they are chosen (m).
-    #[schemars(range(min = 0.0, max = 0.1))]
+    #[schemars(range(min = 0.0, max = 0.1), extend("x-unit" = "m"))]
     pub edge_margin: f64,
     /// What the friction coefficient is multiplied with while planning (no unit), so that grasps keep a margin.
     ///
     /// The paper counts with all of it. A grasp that closes by the last of the friction alone needs large forces in exact directions, and plans are to be
     /// carried out: simulated, 47 of 50 plans of `cubic` arrive with 0.8, 36 with 0.95.
-    #[schemars(range(min = 0.01, max = 1.0))]
+    #[schemars(range(min = 0.01, max = 1.0), extend("x-unit" = "1"))]
     pub friction_margin: f64,
 }
 
@@ -107,7 +107,7 @@ pub struct Budget {
     pub max_nodes: usize,
     /// Most time for the whole run (s); no limit where absent.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.001, max = 1e7))]
+    #[schemars(range(min = 0.001, max = 1e7), extend("x-unit" = "s"))]
     #[schemars(example = 60.0)]
     pub time_limit: Option<f64>,
     /// Tries of the smoother, per segment of the raw plan.

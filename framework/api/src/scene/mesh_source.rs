@@ -21,7 +21,7 @@ pub struct MeshSource {
     pub file: Option<String>,
     /// What lengths are multiplied with (no unit): 0.001 for a file in millimetres. Default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1e-9, max = 1e9))]
+    #[schemars(range(min = 1e-9, max = 1e9), extend("x-unit" = "1"))]
     #[schemars(example = 0.001)]
     pub scale: Option<f64>,
     /// Turns the mesh inside out after reading. Default false.
@@ -31,6 +31,7 @@ pub struct MeshSource {
     /// Vertices (m), instead of a file.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("examples" = [[[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.0, 0.02, 0.0], [0.0, 0.0, 0.02]]]))]
+    #[schemars(extend("x-unit" = "m"))]
     pub vertices: Vec<[f64; 3]>,
     /// Facets as counter-clockwise indices of vertices seen from outside, instead of a file.
     #[serde(skip_serializing_if = "Vec::is_empty")]

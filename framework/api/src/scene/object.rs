@@ -11,34 +11,35 @@ pub enum Shape {
     /// A ball about the origin.
     Sphere {
         /// Radius (m).
-        #[schemars(range(min = 1e-6, max = 1e3))]
+        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
         radius: f64,
     },
     /// A box about the origin, along the axes.
     Box {
         /// Edge lengths (m).
-        #[schemars(inner(range(min = 1e-6, max = 1e3)))]
+        #[schemars(inner(range(min = 1e-6, max = 1e3)), extend("x-unit" = "m"))]
         size: [f64; 3],
     },
     /// All points within `radius` of a segment.
     Capsule {
         /// One end of the segment (m).
-        #[schemars(inner(range(min = -1e3, max = 1e3)))]
+        #[schemars(inner(range(min = -1e3, max = 1e3)), extend("x-unit" = "m"))]
         from: [f64; 3],
         /// The other end (m).
-        #[schemars(inner(range(min = -1e3, max = 1e3)))]
+        #[schemars(inner(range(min = -1e3, max = 1e3)), extend("x-unit" = "m"))]
         to: [f64; 3],
         /// Radius (m).
-        #[schemars(range(min = 1e-6, max = 1e3))]
+        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
         radius: f64,
     },
     /// Everything with `normal · x ≤ offset`.
     HalfSpace {
         /// Outward normal (a direction, of any length).
         #[schemars(extend("examples" = [[0.0, 0.0, 1.0]]))]
+        #[schemars(extend("x-unit" = "1"))]
         normal: [f64; 3],
         /// Distance of the plane from the origin along the normal (m).
-        #[schemars(range(min = -1e3, max = 1e3))]
+        #[schemars(range(min = -1e3, max = 1e3), extend("x-unit" = "m"))]
         #[schemars(example = 0.0)]
         offset: f64,
     },
@@ -81,7 +82,7 @@ pub enum ObjectShape {
     /// A ball.
     Sphere {
         /// Radius (m).
-        #[schemars(range(min = 1e-6, max = 1e3))]
+        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
         radius: f64,
         /// Wished number of facets.
         #[serde(default = "default_facets")]
@@ -91,7 +92,7 @@ pub enum ObjectShape {
     /// An ellipsoid along the axes.
     Ellipsoid {
         /// Half the length along x, y and z (m).
-        #[schemars(inner(range(min = 1e-6, max = 1e3)))]
+        #[schemars(inner(range(min = 1e-6, max = 1e3)), extend("x-unit" = "m"))]
         semi_axes: [f64; 3],
         /// Wished number of facets.
         #[serde(default = "default_facets")]
@@ -101,16 +102,16 @@ pub enum ObjectShape {
     /// A box along the axes: 12 facets.
     Cuboid {
         /// Edge lengths (m).
-        #[schemars(inner(range(min = 1e-6, max = 1e3)))]
+        #[schemars(inner(range(min = 1e-6, max = 1e3)), extend("x-unit" = "m"))]
         size: [f64; 3],
     },
     /// A cylinder along z.
     Cylinder {
         /// Radius (m).
-        #[schemars(range(min = 1e-6, max = 1e3))]
+        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
         radius: f64,
         /// Length along z (m).
-        #[schemars(range(min = 1e-6, max = 1e3))]
+        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
         height: f64,
         /// Wished number of facets.
         #[serde(default = "default_facets")]
@@ -120,11 +121,11 @@ pub enum ObjectShape {
     /// A cylinder along z with half balls at its ends.
     Capsule {
         /// Radius (m).
-        #[schemars(range(min = 1e-6, max = 1e3))]
+        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
         #[schemars(example = 0.02)]
         radius: f64,
         /// Length of the cylindrical part along z (m).
-        #[schemars(range(min = 1e-6, max = 1e3))]
+        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
         #[schemars(example = 0.04)]
         height: f64,
         /// Wished number of facets.
@@ -135,10 +136,10 @@ pub enum ObjectShape {
     /// A ring about z.
     Torus {
         /// Distance of the tube's centre from the z axis (m).
-        #[schemars(range(min = 1e-6, max = 1e3))]
+        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
         ring_radius: f64,
         /// Radius of the tube (m).
-        #[schemars(range(min = 1e-6, max = 1e3))]
+        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
         tube_radius: f64,
         /// Wished number of facets.
         #[serde(default = "default_facets")]
@@ -160,10 +161,10 @@ pub struct ObjectDescription {
     pub shape: ObjectShape,
     /// Mass (kg), uniformly spread.
     #[serde(default = "default_mass")]
-    #[schemars(range(min = 1e-6, max = 1e3))]
+    #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "kg"))]
     pub mass: f64,
     /// Coefficient of friction between object and fingertips (no unit).
-    #[schemars(range(min = 0.0, max = 10.0))]
+    #[schemars(range(min = 0.0, max = 10.0), extend("x-unit" = "1"))]
     pub friction: f64,
 }
 

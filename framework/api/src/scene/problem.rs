@@ -11,16 +11,20 @@ use serde::{Deserialize, Serialize};
 pub struct PoseDescription {
     /// Position (m).
     #[serde(default)]
+    #[schemars(extend("x-unit" = "m"))]
     pub position: [f64; 3],
     /// Orientation as a quaternion w, x, y, z (no unit); normalised when read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("examples" = [[0.707, 0.0, 0.0, 0.707]]))]
+    #[schemars(extend("x-unit" = "1"))]
     pub orientation: Option<[f64; 4]>,
     /// Orientation as a turn about this axis (a direction, of any length), instead of a quaternion; needs `angle_deg`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "1"))]
     pub axis: Option<[f64; 3]>,
     /// The angle of the turn about `axis` (degrees).
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "degrees"))]
     pub angle_deg: Option<f64>,
 }
 
@@ -73,10 +77,12 @@ pub struct FingerGrasp {
     /// Contact point on the object, in the object's frame (m), within 1 mm of the surface; absent for a free finger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("examples" = [[0.0, 0.03, 0.0]]))]
+    #[schemars(extend("x-unit" = "m"))]
     pub contact: Option<[f64; 3]>,
     /// Joint positions (rad; m where prismatic); where absent, inverse kinematics for a contact and the rest posture for a free finger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("examples" = [[0.0, -0.9, 0.6]]))]
+    #[schemars(extend("x-unit" = "rad; m where prismatic"))]
     pub joints: Option<Vec<f64>>,
 }
 
@@ -107,11 +113,11 @@ pub struct GoalDescription {
 #[serde(deny_unknown_fields)]
 pub struct Workspace {
     /// Lowest coordinates in the hand's frame (m).
-    #[schemars(inner(range(min = -1e3, max = 1e3)))]
+    #[schemars(inner(range(min = -1e3, max = 1e3)), extend("x-unit" = "m"))]
     #[schemars(extend("examples" = [[-0.02, -0.02, 0.07]]))]
     pub lower: [f64; 3],
     /// Highest coordinates in the hand's frame (m).
-    #[schemars(inner(range(min = -1e3, max = 1e3)))]
+    #[schemars(inner(range(min = -1e3, max = 1e3)), extend("x-unit" = "m"))]
     #[schemars(extend("examples" = [[0.02, 0.02, 0.11]]))]
     pub upper: [f64; 3],
 }
@@ -129,7 +135,7 @@ pub struct Problem {
     pub obstacle: Vec<ObstacleDescription>,
     /// Acceleration of gravity in the hand's frame (m/s²).
     #[serde(default = "default_gravity")]
-    #[schemars(inner(range(min = -1e3, max = 1e3)))]
+    #[schemars(inner(range(min = -1e3, max = 1e3)), extend("x-unit" = "m/s²"))]
     pub gravity: [f64; 3],
     /// Where the object starts.
     pub start: StartDescription,

@@ -48,8 +48,28 @@ impl fmt::Display for KeyPath {
     }
 }
 
+/// The range that a schema allows, written `0.1..=2 m`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Range {
+    /// The least number.
+    pub low: Option<f64>,
+    /// The greatest number.
+    pub high: Option<f64>,
+    /// The unit; empty where the number has none, or where it depends on something else.
+    pub unit: String,
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let end = |end: Option<f64>| end.map(|end| end.to_string()).unwrap_or_default();
+        let equal = if self.high.is_some() { "=" } else { "" };
+        write!(f, "{}..{equal}{}", end(self.low), end(self.high))?;
+        if self.unit.is_empty() { Ok(()) } else { write!(f, " {}", self.unit) }
+    }
+}
+
 /// How data departs from a schema.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum Fault {
     /// A key that the schema does not know; its path ends with it.
@@ -90,7 +110,7 @@ pub enum Fault {
         /// The number that was found.
         found: String,
         /// The allowed range.
-        range: String,
+        range: Range,
     },
 }
 
@@ -103,7 +123,7 @@ fn suggestion(near: &[String], known: &[String]) -> String {
 }
 
 /// The first place where data depart from a schema.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 #[error("`{path}`{} {fault}", if matches!(fault, Fault::Range { .. }) { " =" } else { ":" })]
 pub struct Departure {
     /// Where.

@@ -1,32 +1,31 @@
-//! Units, as descriptions give them.
+//! Units, as schemas give them.
 
-/// Every unit that a description may give.
-const UNITS: &[&str] = &[
-    "m", "rad", "degrees", "s", "kg", "N", "N·m", "m/s", "m/s²", "rad/s", "rad/s²", "N/m", "N·m/rad", "s⁻¹",
+use serde_json::Value;
+
+/// The key of a schema that holds its number's unit, or its list's.
+pub const UNIT_KEY: &str = "x-unit";
+
+/// Every unit that a schema may give; "1" says that the number has none.
+pub const UNITS: &[&str] = &[
+    "1", "m", "rad", "degrees", "s", "kg", "N", "N·m", "m/s", "m/s²", "rad/s", "rad/s²", "N/m", "N·m/rad",
+    "s⁻¹",
 ];
 
-/// The unit that the description of a number gives in parentheses: `m` in "Radius (m)." and in "Longest edge (m, of a tree).", or
-/// `rad; m where prismatic` where it depends. `None` where the number has no unit.
-///
-/// Descriptions of settings and of keys in files keep to this, so that tables and messages can tell the unit.
-pub fn unit(description: &str) -> Option<&str> {
-    let groups = description.split('(').skip(1).filter_map(|rest| rest.split(')').next());
-    groups.map(|group| group.split(',').next().unwrap_or(group).trim()).find(|group| {
-        let first = group.split(';').next().unwrap_or(group).trim();
-        UNITS.contains(&first)
-    })
+/// The unit of a schema's number: `m`, or `rad; m where prismatic` where it depends. `None` where the number has none, or where the
+/// schema does not say.
+pub fn unit(schema: &Value) -> Option<&str> {
+    schema.get(UNIT_KEY)?.as_str().filter(|unit| *unit != "1")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     #[test]
-    fn units_stand_in_parentheses() {
-        assert_eq!(unit("Radius (m)."), Some("m"));
-        assert_eq!(unit("How far (degrees, 0..=180) it may turn."), Some("degrees"));
-        assert_eq!(unit("Position (rad; m where prismatic)."), Some("rad; m where prismatic"));
-        assert_eq!(unit("Facets (as plan files carry them) about the origin (m)"), Some("m"));
-        assert_eq!(unit("Probability of α = 1 (the paper's), metres"), None);
+    fn units_stand_in_the_schema() {
+        assert_eq!(unit(&json!({"x-unit": "m"})), Some("m"));
+        assert_eq!(unit(&json!({"x-unit": "1"})), None);
+        assert_eq!(unit(&json!({"description": "Radius (m)."})), None);
     }
 }

@@ -3,7 +3,7 @@
 //! Serde's own messages lose the path inside tagged enumerations; this walk keeps it. It knows the part of JSON Schema that `schemars`
 //! writes for plain structs, options, arrays and tagged enumerations; what it does not know it lets pass, for serde to judge.
 
-use crate::{Departure, Fault, KeyPath, near, unit};
+use crate::{Departure, Fault, KeyPath, Range, near, unit};
 use serde_json::{Map, Value};
 
 /// Finds the first place, in the order of the keys, where `value` departs from `schema`.
@@ -185,23 +185,21 @@ fn check_bounds(value: &Value, schema: &Value, path: &KeyPath) -> Result<(), Dep
     if low.is_none_or(|low| number >= low) && high.is_none_or(|high| number <= high) {
         return Ok(());
     }
-    let text = |bound: Option<f64>| bound.map(|x| x.to_string()).unwrap_or_default();
-    let range = format!("{}..={}", text(low), text(high)).trim_end_matches('=').to_owned() + &unit_of(schema);
+    let range = Range { low, high, unit: unit_of(schema) };
     Err(depart(path, Fault::Range { found: shown(value), range }))
 }
 
-/// The unit of a list's numbers stands in the list's description.
+/// The unit of a list's numbers stands in the list's schema.
 fn with_unit(mut departure: Departure, item: &KeyPath, list: &Value) -> Departure {
     if let (true, Fault::Range { range, .. }) = (departure.path == *item, &mut departure.fault) {
-        *range += &unit_of(list);
+        range.unit = unit_of(list);
     }
     departure
 }
 
-/// A blank and the unit that the schema's description gives; nothing where there is none, or where it depends on something else.
+/// The unit of a schema's number; nothing where there is none, or where it depends on something else.
 fn unit_of(schema: &Value) -> String {
-    let description = schema.get("description").and_then(Value::as_str).unwrap_or_default();
-    unit(description).filter(|unit| !unit.contains(';')).map_or(String::new(), |unit| format!(" {unit}"))
+    unit(schema).filter(|unit| !unit.contains(';')).unwrap_or_default().to_owned()
 }
 
 fn is_of_type(value: &Value, name: &str) -> bool {

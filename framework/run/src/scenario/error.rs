@@ -42,7 +42,7 @@ impl fmt::Display for Place {
 }
 
 /// A scenario, or something that it names, is refused.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ScenarioError {
     /// Neither a built-in name nor a file.

@@ -33,7 +33,7 @@ pub struct ScenarioFile {
     pub obstacle: Vec<ObstacleDescription>,
     /// Acceleration of gravity in the hand's frame (m/s²).
     #[serde(default = "default_gravity")]
-    #[schemars(inner(range(min = -1e3, max = 1e3)))]
+    #[schemars(inner(range(min = -1e3, max = 1e3)), extend("x-unit" = "m/s²"))]
     pub gravity: [f64; 3],
     /// Where the object starts.
     pub start: StartDescription,
@@ -61,6 +61,7 @@ pub struct PaperFigures {
     /// What the publication calls the problem.
     pub example: String,
     /// Average time to solve it (s).
+    #[schemars(extend("x-unit" = "s"))]
     pub time_s: f64,
     /// Average number of nodes that were generated.
     pub generated_nodes: usize,
@@ -89,13 +90,14 @@ pub struct HandChoice {
     pub tips: Vec<String>,
     /// Radius of the balls that stand for the fingertips (m); where absent, that of the tip links' own balls.
     #[serde(default)]
-    #[schemars(range(min = 1e-4, max = 0.2))]
+    #[schemars(range(min = 1e-4, max = 0.2), extend("x-unit" = "m"))]
     #[schemars(example = 0.012)]
     pub fingertip_radius: Option<f64>,
     /// Centres of these balls in the frames of the tip links (m): one for all, or one for each finger; where absent, they are fitted to the tip
     /// links' shapes.
     #[serde(default)]
     #[schemars(extend("examples" = [[[0.0, 0.0, 0.01]]]))]
+    #[schemars(extend("x-unit" = "m"))]
     pub tip_offset: Vec<[f64; 3]>,
     /// The URDF's link whose frame is the hand's; where absent, the last one that all fingertips hang on.
     #[serde(default)]
@@ -112,17 +114,17 @@ pub struct HandChoice {
     pub mesh_pieces: Option<usize>,
     /// Largest acceleration of every joint (rad/s²); where absent, what the URDF says, or else 20.
     #[serde(default)]
-    #[schemars(range(min = 1e-3, max = 1e9))]
+    #[schemars(range(min = 1e-3, max = 1e9), extend("x-unit" = "rad/s²"))]
     #[schemars(example = 20.0)]
     pub acceleration: Option<f64>,
     /// Largest velocity (rad/s) of joints for which the URDF says none, or 0.
     #[serde(default)]
-    #[schemars(range(min = 1e-3, max = 1e9))]
+    #[schemars(range(min = 1e-3, max = 1e9), extend("x-unit" = "rad/s"))]
     #[schemars(example = 3.0)]
     pub velocity: Option<f64>,
     /// Largest effort (N·m) of joints for which the URDF says none, or 0.
     #[serde(default)]
-    #[schemars(range(min = 1e-6, max = 1e9))]
+    #[schemars(range(min = 1e-6, max = 1e9), extend("x-unit" = "N·m"))]
     #[schemars(example = 1.0)]
     pub effort: Option<f64>,
 }

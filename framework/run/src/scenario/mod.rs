@@ -16,8 +16,10 @@ pub use hand::{LoadedHand, load_hand};
 pub use library::*;
 
 pub use document::{Document, is_json, key_path};
-use regrasp_api::{HandDescription, MeshSource, ObjectDescription, ObjectModel, ObjectShape, Problem, Slot};
-use regrasp_api::{Step, near};
+use regrasp_api::{
+    HandDescription, MeshSource, ObjectDescription, ObjectModel, ObjectShape, Problem, SettingsError, Slot,
+    Step, near,
+};
 use regrasp_formats::{embed_obstacles, load_mesh};
 use regrasp_host::{Choices, HostError, Registry};
 use regrasp_world::{ChainHand, check_problem, check_units, load_object, object_of_mesh};
@@ -217,10 +219,10 @@ fn choices(
 fn plugin_error(document: &Document, slot: Slot, error: HostError) -> ScenarioError {
     let mut path = key_path(&format!("plugins.{}", slot.name()));
     match &error {
-        HostError::Form { departure, .. } => path.0.extend(departure.path.0.iter().cloned()),
-        HostError::Settings { error: regrasp_api::SettingsError::Range { key, .. }, .. } => {
-            path = path.key(key);
+        HostError::Settings { error: SettingsError::Departs(departure), .. } => {
+            path.0.extend(departure.path.0.iter().cloned());
         }
+        HostError::Settings { error: SettingsError::Value { key, .. }, .. } => path = path.key(key),
         HostError::UnknownPlugin { .. } | HostError::WrongSlot { .. } => path.0.push(Step::Key("use".into())),
         _ => {}
     }

@@ -30,7 +30,7 @@ pub struct StudyFile {
     /// The first seed; 0 where absent.
     pub first_seed: Option<u64>,
     /// Most time for one run (s); no limit where absent.
-    #[schemars(range(min = 0.001, max = 1e7))]
+    #[schemars(range(min = 0.001, max = 1e7), extend("x-unit" = "s"))]
     pub time_limit: Option<f64>,
     /// Most nodes to generate for each goal; where absent, what the scenario says.
     #[schemars(range(min = 1, max = 10_000_000))]

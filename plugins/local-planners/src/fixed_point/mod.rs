@@ -25,7 +25,7 @@ use crate::transfer::{Motion, Pace, demand_fingertip};
 use pin::{Failure, Pinned};
 use regrasp_api::{
     Build, CallError, Configuration, Context, Entry, Fingertip, Hand, Hint, LocalPlanner, Path, Pose,
-    Reached, Reason, Settings, SettingsError, Slot, Target, Task, check_count, check_range, check_settings,
+    Reached, Reason, Settings, SettingsError, Slot, Target, Task, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -37,11 +37,11 @@ const SLOT: Slot = Slot::TransferPlanner;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FixedPointSettings {
-    /// What part of the task's tolerances for closure and slip the fingertip may stray between two states, 0.01 to 1. Default: half,
+    /// What part of the task's tolerances for closure and slip the fingertip may stray between two states. Default: half,
     /// as the plan's meaning asks.
-    #[schemars(range(min = 0.01, max = 1.0))]
+    #[schemars(range(min = 0.01, max = 1.0), extend("x-unit" = "1"))]
     pub tolerance_share: f64,
-    /// How often a step may be halved before the contact counts as lost, 0 to 20. Our choice.
+    /// How often a step may be halved before the contact counts as lost. Our choice.
     #[schemars(range(min = 0, max = 20))]
     pub halvings: usize,
 }
@@ -52,12 +52,7 @@ impl Default for FixedPointSettings {
     }
 }
 
-impl Settings for FixedPointSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("tolerance_share", self.tolerance_share, 0.01, 1.0)?;
-        check_count("halvings", self.halvings, 0, 20)
-    }
-}
+impl Settings for FixedPointSettings {}
 
 /// Moves the object straight to a pose, every holding fingertip pinned to its contact point; free fingers stay.
 ///

@@ -9,7 +9,7 @@ use crate::common::{Levers, largest_travel, wrong_target};
 use crate::transfer::{Motion, Pace, demand_fingertip};
 use regrasp_api::{
     Build, CallError, Configuration, Context, Entry, Fingertip, Hand, Hint, LocalPlanner, Mesh, Path, Pose,
-    Reached, Reason, Settings, SettingsError, Slot, Target, Task, check_count, check_range, check_settings,
+    Reached, Reason, Settings, SettingsError, Slot, Target, Task, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,11 +22,11 @@ const SLOT: Slot = Slot::TransferPlanner;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RollingSettings {
-    /// What part of the task's tolerances for closure and slip the motion may use, in 0.01 to 1. Default: half, as the plan's
+    /// What part of the task's tolerances for closure and slip the motion may use. Default: half, as the plan's
     /// meaning asks.
-    #[schemars(range(min = 0.01, max = 1.0))]
+    #[schemars(range(min = 0.01, max = 1.0), extend("x-unit" = "1"))]
     pub tolerance_share: f64,
-    /// How often a step may be halved before the contact counts as lost, 0 to 20. Our choice.
+    /// How often a step may be halved before the contact counts as lost. Our choice.
     #[schemars(range(min = 0, max = 20))]
     pub halvings: usize,
 }
@@ -37,12 +37,7 @@ impl Default for RollingSettings {
     }
 }
 
-impl Settings for RollingSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("tolerance_share", self.tolerance_share, 0.01, 1.0)?;
-        check_count("halvings", self.halvings, 0, 20)
-    }
-}
+impl Settings for RollingSettings {}
 
 /// Moves the object straight to a pose while every holding fingertip rolls on it without slip; free fingers stay.
 ///

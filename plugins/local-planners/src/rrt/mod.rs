@@ -6,7 +6,7 @@ use crate::common::Levers;
 use crate::regrasp::{Detour, Flight, Regrasping, SLOT};
 use regrasp_api::{
     Build, CallError, Configuration, Context, Entry, FingerJoints, Hand, LocalPlanner, Path, Reached,
-    Settings, SettingsError, Target, Task, check_count, check_range, check_settings,
+    Settings, SettingsError, Target, Task, check_settings,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,10 +22,10 @@ pub struct RrtSettings {
     /// that a hopeless search does not hold the planner up.
     #[schemars(range(min = 0, max = 100_000))]
     pub nodes: usize,
-    /// Longest edge of a tree, as a bound of the finger's travel (m), 1e-3 to 0.5. Our choice.
-    #[schemars(range(min = 1e-3, max = 0.5))]
+    /// Longest edge of a tree, as a bound of the finger's travel (m). Our choice.
+    #[schemars(range(min = 1e-3, max = 0.5), extend("x-unit" = "m"))]
     pub extend: f64,
-    /// Tries to shorten the path that the trees find, 0 to 10,000. Our choice.
+    /// Tries to shorten the path that the trees find. Our choice.
     #[schemars(range(min = 0, max = 10_000))]
     pub shortcuts: usize,
 }
@@ -36,13 +36,7 @@ impl Default for RrtSettings {
     }
 }
 
-impl Settings for RrtSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("nodes", self.nodes, 0, 100_000)?;
-        check_range("extend", self.extend, 1e-3, 0.5)?;
-        check_count("shortcuts", self.shortcuts, 0, 10_000)
-    }
-}
+impl Settings for RrtSettings {}
 
 /// Moves one finger to a new contact or a free posture, the object resting in the grasp of the others.
 ///

@@ -23,8 +23,7 @@ use crate::pose::{self, PoseLaw};
 use assign::Assignment;
 use regrasp_api::{
     Build, CallError, ClosedChainSampler, Configuration, Contact, Context, Entry, FingerSet, PerFinger, Pose,
-    PoseRequest, Reason, Settings, SettingsError, Slot, Task, check_count, check_range, check_settings,
-    inventory,
+    PoseRequest, Reason, Settings, SettingsError, Slot, Task, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -35,17 +34,17 @@ const EDGE_DRAWS: usize = 100;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GraspFirstSettings {
-    /// Grasps of the object that one call draws, stable or not, 1..=1000000.
+    /// Grasps of the object that one call draws, stable or not.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub grasps: usize,
-    /// Poses that are tried for each stable grasp, 1..=10000; one where the request prescribes it.
+    /// Poses that are tried for each stable grasp; one where the request prescribes it.
     #[schemars(range(min = 1, max = 10_000))]
     pub poses: usize,
-    /// The fraction of poses drawn with any orientation, in 0..=1; the others are drawn near the motion from start to goal.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// The fraction of poses drawn with any orientation; the others are drawn near the motion from start to goal.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub anywhere: f64,
-    /// How far (degrees, 0..=180) the latter may turn away from that motion.
-    #[schemars(range(min = 0.0, max = 180.0))]
+    /// How far (degrees) the latter may turn away from that motion.
+    #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "degrees"))]
     pub spread_deg: f64,
 }
 
@@ -56,14 +55,7 @@ impl Default for GraspFirstSettings {
     }
 }
 
-impl Settings for GraspFirstSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("grasps", self.grasps, 1, 1_000_000)?;
-        check_count("poses", self.poses, 1, 10_000)?;
-        check_range("anywhere", self.anywhere, 0.0, 1.0)?;
-        check_range("spread_deg", self.spread_deg, 0.0, 180.0)
-    }
-}
+impl Settings for GraspFirstSettings {}
 
 /// Samples a stable grasp first, then the pose.
 #[derive(Clone, Copy, Debug)]

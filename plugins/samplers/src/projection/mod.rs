@@ -25,7 +25,7 @@ use newton::{Newton, Unknowns};
 use regrasp_api::{
     Build, CallError, ClosedChainSampler, Configuration, Contact, Context, Entry, FingerIndex, FingerJoints,
     FingerSet, PerFinger, Pose, PoseRequest, Random, Reason, Settings, SettingsError, Slot, Task,
-    check_count, check_range, check_settings, inventory,
+    check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -33,23 +33,23 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ProjectionSettings {
-    /// Random starts that one call tries, 1..=100000.
+    /// Random starts that one call tries.
     #[schemars(range(min = 1, max = 100_000))]
     pub starts: usize,
-    /// Newton steps that bring one start onto the manifold, 1..=1000.
+    /// Newton steps that bring one start onto the manifold.
     #[schemars(range(min = 1, max = 1000))]
     pub steps: usize,
-    /// How often the joints of one finger are drawn at one pose before the start is given up, 1..=10000.
+    /// How often the joints of one finger are drawn at one pose before the start is given up.
     #[schemars(range(min = 1, max = 10_000))]
     pub draws: usize,
-    /// How far (of the range of each joint, 0..=1) starts near a configuration may lie from its joints.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// How far (of the range of each joint) starts near a configuration may lie from its joints.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub near: f64,
-    /// The fraction of starts with any orientation, in 0..=1; the others start near the motion from start to goal.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    /// The fraction of starts with any orientation; the others start near the motion from start to goal.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub anywhere: f64,
-    /// How far (degrees, 0..=180) the latter may turn away from that motion.
-    #[schemars(range(min = 0.0, max = 180.0))]
+    /// How far (degrees) the latter may turn away from that motion.
+    #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "degrees"))]
     pub spread_deg: f64,
 }
 
@@ -60,16 +60,7 @@ impl Default for ProjectionSettings {
     }
 }
 
-impl Settings for ProjectionSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_count("starts", self.starts, 1, 100_000)?;
-        check_count("steps", self.steps, 1, 1000)?;
-        check_count("draws", self.draws, 1, 10_000)?;
-        check_range("near", self.near, 0.0, 1.0)?;
-        check_range("anywhere", self.anywhere, 0.0, 1.0)?;
-        check_range("spread_deg", self.spread_deg, 0.0, 180.0)
-    }
-}
+impl Settings for ProjectionSettings {}
 
 /// Samples by projection onto the closure manifold.
 #[derive(Clone, Copy, Debug)]

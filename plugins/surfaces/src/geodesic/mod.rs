@@ -24,7 +24,7 @@ use crate::rolling::Rolling;
 use bound::{Ball, LowerBound};
 use regrasp_api::{
     Build, BuildError, Built, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings,
-    SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, check_range, check_settings, inventory,
+    Slot, SurfaceParam, SurfacePath, Vec3, check_settings, inventory,
 };
 use schemars::JsonSchema;
 use search::Search;
@@ -58,16 +58,16 @@ fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GeodesicSettings {
-    /// An edge is sharp where its facets' normals differ by more than this angle (degrees), in 1..=180. Default 30, a neutral choice.
-    #[schemars(range(min = 1.0, max = 180.0))]
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, a neutral choice.
+    #[schemars(range(min = 1.0, max = 180.0), extend("x-unit" = "degrees"))]
     pub sharp_angle_deg: f64,
-    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked, in
-    /// 1e-5..=1e-2; at most a fifth of its radius r. A spike between two places sinks in by step²/(8 r) at most. Default
+    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked;
+    /// at most a fifth of its radius r. A spike between two places sinks in by step²/(8 r) at most. Default
     /// 0.001, the step of a transfer: 13 µm for a radius of 10 mm, less than a plan's tolerance of closure.
-    #[schemars(range(min = 1e-5, max = 1e-2))]
+    #[schemars(range(min = 1e-5, max = 1e-2), extend("x-unit" = "m"))]
     pub step: f64,
-    /// By how much a path may be longer than the shortest one, relative, in 1e-9..=1e-3. Default 2e-4, a neutral choice.
-    #[schemars(range(min = 1e-9, max = 1e-3))]
+    /// By how much a path may be longer than the shortest one, relative. Default 2e-4, a neutral choice.
+    #[schemars(range(min = 1e-9, max = 1e-3), extend("x-unit" = "1"))]
     pub tolerance: f64,
 }
 
@@ -77,13 +77,7 @@ impl Default for GeodesicSettings {
     }
 }
 
-impl Settings for GeodesicSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("sharp_angle_deg", self.sharp_angle_deg, 1.0, 180.0)?;
-        check_range("step", self.step, 1e-5, 1e-2)?;
-        check_range("tolerance", self.tolerance, 1e-9, 1e-3)
-    }
-}
+impl Settings for GeodesicSettings {}
 
 /// The surface of a polyhedron under a fingertip of one radius.
 #[derive(Clone, Debug)]

@@ -42,7 +42,7 @@ use field::Field;
 use fine::{Fine, FinePoint};
 use regrasp_api::{
     Build, BuildError, Built, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings,
-    SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, check_range, check_settings, inventory,
+    Slot, SurfaceParam, SurfacePath, Vec3, check_settings, inventory,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -80,18 +80,18 @@ const MOST_CORNERS: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct HeatSettings {
-    /// Facets are cut into four until there are this many, in 1..=100000. Default 3000, a neutral choice.
+    /// Facets are cut into four until there are this many. Default 3000, a neutral choice.
     #[schemars(range(min = 1, max = 100_000))]
     pub fewest_facets: u32,
-    /// Time of the heat flow over the mean edge's length squared (no unit), in 0.1..=1000. Default 1, the paper's value.
-    #[schemars(range(min = 0.1, max = 1000.0))]
+    /// Time of the heat flow over the mean edge's length squared (no unit). Default 1, the paper's value.
+    #[schemars(range(min = 0.1, max = 1000.0), extend("x-unit" = "1"))]
     pub smoothing: f64,
-    /// An edge is sharp where its facets' normals differ by more than this angle (degrees), in 1..=180. Default 30, a neutral choice.
-    #[schemars(range(min = 1.0, max = 180.0))]
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, a neutral choice.
+    #[schemars(range(min = 1.0, max = 180.0), extend("x-unit" = "degrees"))]
     pub sharp_angle_deg: f64,
-    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked, in
-    /// 1e-5..=1e-2; at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
-    #[schemars(range(min = 1e-5, max = 1e-2))]
+    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked;
+    /// at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
+    #[schemars(range(min = 1e-5, max = 1e-2), extend("x-unit" = "m"))]
     pub step: f64,
 }
 
@@ -101,14 +101,7 @@ impl Default for HeatSettings {
     }
 }
 
-impl Settings for HeatSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("fewest_facets", self.fewest_facets.into(), 1.0, 1e5)?;
-        check_range("smoothing", self.smoothing, 0.1, 1000.0)?;
-        check_range("sharp_angle_deg", self.sharp_angle_deg, 1.0, 180.0)?;
-        check_range("step", self.step, 1e-5, 1e-2)
-    }
-}
+impl Settings for HeatSettings {}
 
 /// The surface of a polyhedron with the factors of its heat and Laplace systems.
 #[derive(Clone)]

@@ -38,8 +38,7 @@ use crate::rolling::Rolling;
 use facets::{Corridor, Facets};
 use regrasp_api::{
     Build, BuildError, Built, CallError, Contact, Context, Entry, ObjectModel, Parts, Primitive, Projection,
-    Random, Settings, SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, check_range, check_settings,
-    inventory,
+    Random, Settings, Slot, SurfaceParam, SurfacePath, Vec3, check_settings, inventory,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -77,15 +76,15 @@ const MOST_TRIES: usize = 8;
 #[serde(deny_unknown_fields, default)]
 pub struct ParametricSettings {
     /// Largest distance between two points of the closed form's path through which the path over the facets is led, in radii of
-    /// the object (the largest distance of a vertex from its origin), in 0.005..=0.5. Default 0.06, a neutral choice.
-    #[schemars(range(min = 0.005, max = 0.5))]
+    /// the object (the largest distance of a vertex from its origin). Default 0.06, a neutral choice.
+    #[schemars(range(min = 0.005, max = 0.5), extend("x-unit" = "1"))]
     pub spacing: f64,
-    /// An edge is sharp where its facets' normals differ by more than this angle (degrees), in 1..=180. Default 30, as for `surface/geodesic`.
-    #[schemars(range(min = 1.0, max = 180.0))]
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, as for `surface/geodesic`.
+    #[schemars(range(min = 1.0, max = 180.0), extend("x-unit" = "degrees"))]
     pub sharp_angle_deg: f64,
-    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked, in
-    /// 1e-5..=1e-2; at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
-    #[schemars(range(min = 1e-5, max = 1e-2))]
+    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked;
+    /// at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
+    #[schemars(range(min = 1e-5, max = 1e-2), extend("x-unit" = "m"))]
     pub step: f64,
 }
 
@@ -95,13 +94,7 @@ impl Default for ParametricSettings {
     }
 }
 
-impl Settings for ParametricSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("spacing", self.spacing, 0.005, 0.5)?;
-        check_range("sharp_angle_deg", self.sharp_angle_deg, 1.0, 180.0)?;
-        check_range("step", self.step, 1e-5, 1e-2)
-    }
-}
+impl Settings for ParametricSettings {}
 
 /// The facets of a primitive, with paths from its closed form.
 #[derive(Debug)]

@@ -32,7 +32,7 @@ use crate::strip::Strip;
 use graph::{Found, Graph, START, Scratch, Search};
 use regrasp_api::{
     Build, BuildError, Built, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings,
-    SettingsError, Slot, SurfaceParam, SurfacePath, Vec3, Waypoint, check_range, check_settings, inventory,
+    Slot, SurfaceParam, SurfacePath, Vec3, Waypoint, check_settings, inventory,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -65,20 +65,20 @@ const MOST_POINTS: f64 = 2e6;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SteinerSettings {
-    /// The fewest points on an edge, in 1..=64. Default 2, a neutral choice.
+    /// The fewest points on an edge. Default 2, a neutral choice.
     #[schemars(range(min = 1, max = 64))]
     pub fewest: u32,
-    /// Largest distance (m) between neighbouring points of an edge, in 1e-5..=1. Default 0.002, a neutral choice.
-    #[schemars(range(min = 1e-5, max = 1.0))]
+    /// Largest distance (m) between neighbouring points of an edge. Default 0.002, a neutral choice.
+    #[schemars(range(min = 1e-5, max = 1.0), extend("x-unit" = "m"))]
     pub spacing: f64,
     /// Whether paths are pulled tight in their strip of facets. Default true; false is the cited algorithm.
     pub straighten: bool,
-    /// An edge is sharp where its facets' normals differ by more than this angle (degrees), in 1..=180. Default 30, a neutral choice.
-    #[schemars(range(min = 1.0, max = 180.0))]
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, a neutral choice.
+    #[schemars(range(min = 1.0, max = 180.0), extend("x-unit" = "degrees"))]
     pub sharp_angle_deg: f64,
-    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked, in
-    /// 1e-5..=1e-2; at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
-    #[schemars(range(min = 1e-5, max = 1e-2))]
+    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked;
+    /// at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
+    #[schemars(range(min = 1e-5, max = 1e-2), extend("x-unit" = "m"))]
     pub step: f64,
 }
 
@@ -88,14 +88,7 @@ impl Default for SteinerSettings {
     }
 }
 
-impl Settings for SteinerSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("fewest", self.fewest.into(), 1.0, 64.0)?;
-        check_range("spacing", self.spacing, 1e-5, 1.0)?;
-        check_range("sharp_angle_deg", self.sharp_angle_deg, 1.0, 180.0)?;
-        check_range("step", self.step, 1e-5, 1e-2)
-    }
-}
+impl Settings for SteinerSettings {}
 
 /// The surface of a polyhedron with Steiner points on its edges.
 #[derive(Clone, Debug)]
