@@ -36,6 +36,22 @@ pub enum Command {
     Reference(crate::reference::ReferenceArgs),
 }
 
+impl Command {
+    /// Whether standard output is to be one JSON object.
+    pub fn is_json(&self) -> bool {
+        match self {
+            Self::Plan(args) => args.json,
+            Self::Verify(args) => args.json,
+            Self::Compare(args) => args.json,
+            Self::Replay(args) => args.json,
+            Self::Hand(args) => args.json,
+            Self::Plugins(args) => args.json,
+            Self::Scenarios(args) => args.json,
+            _ => false,
+        }
+    }
+}
+
 /// Plan a scenario, verify the plan, and write it to a file.
 #[derive(Debug, Args)]
 #[command(after_help = "\

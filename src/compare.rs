@@ -22,27 +22,27 @@ use std::{panic, thread};
 pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     outputs::check_folder(&args.output)?;
     if !args.merge.is_empty() {
-        let study = compare::merge(&args.merge, &args.output).map_err(Failure::bad_input)?;
-        let (_, records) = compare::read_study(&args.output).map_err(Failure::bad_input)?;
+        let study = compare::merge(&args.merge, &args.output).map_err(Failure::refused)?;
+        let (_, records) = compare::read_study(&args.output).map_err(Failure::refused)?;
         return report(args, &study, &records);
     }
     let registry = plugins::registry(&args.libraries)?;
     let (scenarios, draft) = request(args, &registry)?;
-    let prepared = compare::prepare(draft, &scenarios, &registry).map_err(Failure::bad_input)?;
+    let prepared = compare::prepare(draft, &scenarios, &registry).map_err(Failure::refused)?;
     make(args, prepared)
 }
 
 /// Makes what is missing of the study, writes its results, and reports.
 fn make(args: &CompareArgs, mut prepared: compare::Prepared<'_>) -> Result<(), Failure> {
-    let mut folder = Folder::open(&args.output, &mut prepared.study).map_err(Failure::bad_input)?;
+    let mut folder = Folder::open(&args.output, &mut prepared.study).map_err(Failure::refused)?;
     hush_runs();
     let (watch, bar) = (Watch::start(None), Bar::new());
     let threads = threads(args);
     let execution = Execution { threads, clock: &watch, cancel: &watch, progress: &bar };
     let complete = compare::execute(&prepared, &mut folder, &execution);
     bar.finish();
-    let complete = complete.map_err(Failure::bad_input)?;
-    folder.finish(&prepared.study).map_err(Failure::bad_input)?;
+    let complete = complete.map_err(Failure::refused)?;
+    folder.finish(&prepared.study).map_err(Failure::refused)?;
     let records = folder.records();
     if complete {
         return report(args, &prepared.study, &records);
@@ -74,7 +74,7 @@ fn hush_runs() {
 /// What is asked for: the scenarios with the changes for all variants made, and the study of them.
 fn request(args: &CompareArgs, registry: &Registry) -> Result<(Vec<Scenario>, Draft), Failure> {
     let mut asked = match &args.study {
-        Some(path) => compare::load_study(path, registry).map_err(Failure::bad_input)?,
+        Some(path) => compare::load_study(path, registry).map_err(Failure::refused)?,
         None => compare::StudyRequest {
             scenarios: scenarios(args, registry)?,
             variants: variants(args, registry)?,
@@ -105,7 +105,7 @@ fn request(args: &CompareArgs, registry: &Registry) -> Result<(Vec<Scenario>, Dr
 fn scenarios(args: &CompareArgs, registry: &Registry) -> Result<Vec<Scenario>, Failure> {
     let suite = args.suite.map(compare::Suite::scenarios).unwrap_or_default();
     let names = suite.into_iter().chain(args.scenarios.iter().map(String::as_str));
-    let scenarios = names.map(|name| scenario::load(name, registry).map_err(Failure::bad_input));
+    let scenarios = names.map(|name| scenario::load(name, registry).map_err(Failure::refused));
     let scenarios: Vec<Scenario> = scenarios.collect::<Result<_, _>>()?;
     match scenarios.is_empty() {
         true => Err(Failure::bad_input(

@@ -38,7 +38,7 @@ fn shown(program: &Command) -> Command {
 /// The program with the names that its arguments can have. A scenario can be a file too: bash offers files beside names, other shells
 /// would not.
 fn with_names(program: Command, shell: Shell) -> Result<Command, Failure> {
-    let registry = Registry::linked().map_err(Failure::bad_input)?;
+    let registry = Registry::linked().map_err(Failure::refused)?;
     let roles = Role::ALL.map(Role::name).to_vec();
     let scenarios: Vec<&'static str> = SCENARIOS.iter().map(|file| file.name).collect();
     let plugins = roles.iter().copied().chain(registry.entries().map(|entry| entry.id)).collect();

@@ -46,7 +46,7 @@ fn format() -> impl TypedValueParser<Value = Format> {
 
 pub fn run(args: &ExportArgs) -> Result<(), Failure> {
     outputs::check_folder(&args.output)?;
-    let plan = regrasp::plan::read(&args.plan).map_err(Failure::bad_input)?;
+    let plan = regrasp::plan::read(&args.plan).map_err(Failure::refused)?;
     let refuse = |error: ExportError| {
         Failure::bad_input(format!("`{}` cannot be exported: {error}", args.plan.display()))
     };
@@ -84,7 +84,7 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
 }
 
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    regrasp::plan::write_file(path, |writer| writer.write_all(bytes)).map_err(Failure::bad_input)
+    regrasp::plan::write_file(path, |writer| writer.write_all(bytes)).map_err(Failure::refused)
 }
 
 fn tell(args: &ExportArgs, files: &[(Format, File)], notes: &[String]) -> Result<(), Failure> {

@@ -91,8 +91,8 @@ pub fn run(args: &HandArgs) -> Result<(), Failure> {
         velocity: args.velocity,
         effort: args.effort,
     };
-    let UrdfHand { description, report } = read_urdf(&args.file, &options).map_err(Failure::bad_input)?;
-    let hand = ChainHand::new(description).map_err(Failure::bad_input)?;
+    let UrdfHand { description, report } = read_urdf(&args.file, &options).map_err(Failure::refused)?;
+    let hand = ChainHand::new(description).map_err(Failure::refused)?;
     if let Some(path) = &args.output {
         write(path, hand.description())?;
     }
@@ -121,7 +121,7 @@ fn write(path: &Path, hand: &HandDescription) -> Result<(), Failure> {
     if outputs::is_standard(path) {
         return say(&text);
     }
-    regrasp::plan::write_file(path, |out| out.write_all(text.as_bytes())).map_err(Failure::bad_input)
+    regrasp::plan::write_file(path, |out| out.write_all(text.as_bytes())).map_err(Failure::refused)
 }
 
 /// A hand and everything that is told about it.

@@ -34,6 +34,7 @@ use clap::Parser;
 use failure::Failure;
 use std::io::{self, Write};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 // The library links the built-in plugins; a program that did not name it would have none.
 use regrasp as _;
@@ -58,12 +59,22 @@ fn main() -> ExitCode {
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.exit(),
+        Err(failure) => {
+            // One JSON object goes to standard output: the error where there was no answer.
+            if arguments.command.is_json() && !ANSWERED.load(Ordering::Relaxed) {
+                let _ = say_json(&failure.json());
+            }
+            failure.exit()
+        }
     }
 }
 
+/// Whether something was written to standard output.
+static ANSWERED: AtomicBool = AtomicBool::new(false);
+
 /// Writes to standard output; a reader that has gone away, as in `regrasp plugins | head`, is no failure.
 fn say(text: &str) -> Result<(), Failure> {
+    ANSWERED.store(true, Ordering::Relaxed);
     let mut out = io::stdout().lock();
     match out.write_all(terminal::printable(text).as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

@@ -81,7 +81,7 @@ pub fn parse(text: &str) -> Result<Value, String> {
 }
 
 pub fn refuse(option: &str, text: &str, error: &HostError) -> Failure {
-    Failure::bad_input(format!("`--{option} {text}`: {error}"))
+    Failure::refused(error.clone()).told(format!("`--{option} {text}`: {error}"))
 }
 
 #[cfg(test)]

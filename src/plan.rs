@@ -15,10 +15,10 @@ use std::path::{Path, PathBuf};
 pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     check_outputs(args)?;
     let registry = plugins::registry(&args.libraries)?;
-    let mut scenario = scenario::load(&args.scenario, &registry).map_err(Failure::bad_input)?;
+    let mut scenario = scenario::load(&args.scenario, &registry).map_err(Failure::refused)?;
     remark(&scenario.remarks);
     overrides::apply(&mut scenario, args)?;
-    let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::bad_input)?;
+    let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::refused)?;
     let watch = Watch::start(scenario.problem.limits.budget.time_limit);
     let line = Line::new();
     let (seed, threads) = (args.seed, usize::from(args.threads));
@@ -26,7 +26,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     let ran = if is_audited(args) {
         audited(args, &setup, &options)
     } else {
-        setup.run(&options).map_err(Failure::bad_input)
+        setup.run(&options).map_err(Failure::refused)
     };
     line.finish();
     let ran = ran?;
@@ -128,7 +128,7 @@ fn save(output: Option<&Path>, run: &Run) -> Result<Option<PathBuf>, Failure> {
 }
 
 fn write(path: &Path, plan: &Plan) -> Result<(), Failure> {
-    regrasp::plan::write(path, plan).map_err(Failure::bad_input)
+    regrasp::plan::write(path, plan).map_err(Failure::refused)
 }
 
 /// `plan.json` becomes `plan.partial.json`.

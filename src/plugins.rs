@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 
 /// The plugins that are linked into the program, and those of the libraries that are to be loaded.
 pub fn registry(libraries: &LibraryArgs) -> Result<Registry, Failure> {
-    let linked = Registry::linked().map_err(Failure::bad_input)?;
-    linked.with_libraries(&libraries.load).map_err(Failure::bad_input)
+    let linked = Registry::linked().map_err(Failure::refused)?;
+    linked.with_libraries(&libraries.load).map_err(Failure::refused)
 }
 
 pub fn run(args: &PluginsArgs) -> Result<(), Failure> {
@@ -55,7 +55,7 @@ fn described(registry: &Registry, entry: &Entry) -> Result<Value, Failure> {
         "slots": entry.slots.iter().map(|slot| slot.name()).collect::<Vec<_>>(),
         "summary": entry.summary,
         "references": entry.references,
-        "settings_schema": settings_schema(entry).map_err(Failure::bad_input)?,
+        "settings_schema": settings_schema(entry).map_err(Failure::refused)?,
         "source": registry.source(entry).to_string(),
     }))
 }
@@ -82,7 +82,7 @@ fn details(registry: &Registry, entry: &Entry) -> Result<String, Failure> {
     for reference in entry.references {
         text += &format!("  reference: {reference}\n");
     }
-    let schema = settings_schema(entry).map_err(Failure::bad_input)?;
+    let schema = settings_schema(entry).map_err(Failure::refused)?;
     Ok(text + &settings(&schema) + &example(entry, &schema))
 }
 

@@ -32,7 +32,7 @@ pub fn run(args: &ReferenceArgs) -> Result<(), Failure> {
     ];
     for (name, text) in pages {
         let path = args.folder.join(name);
-        regrasp::plan::write_file(&path, |out| out.write_all(text.as_bytes())).map_err(Failure::bad_input)?;
+        regrasp::plan::write_file(&path, |out| out.write_all(text.as_bytes())).map_err(Failure::refused)?;
         say(&format!("{}\n", path.display()))?;
     }
     Ok(())

@@ -12,8 +12,8 @@ pub fn run(args: &ScenariosArgs) -> Result<(), Failure> {
     if let Some(name) = &args.name {
         return print_file(name);
     }
-    let registry = Registry::linked().map_err(Failure::bad_input)?;
-    let load = |name| scenario::load(name, &registry).map_err(Failure::bad_input);
+    let registry = Registry::linked().map_err(Failure::refused)?;
+    let load = |name| scenario::load(name, &registry).map_err(Failure::refused);
     let scenarios = SCENARIOS.iter().map(|file| load(file.name)).collect::<Result<Vec<_>, _>>()?;
     if args.json {
         return say_json(&Value::Array(scenarios.iter().map(described).collect()));

@@ -9,7 +9,7 @@ use regrasp::verify::Check;
 use serde_json::json;
 
 pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
-    let plan = regrasp::plan::read(&args.plan).map_err(Failure::bad_input)?;
+    let plan = regrasp::plan::read(&args.plan).map_err(Failure::refused)?;
     let verdict = regrasp::verify::verify(&plan);
     if args.json {
         say_json(&json!(verdict))?;

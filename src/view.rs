@@ -36,7 +36,7 @@ pub fn run(args: &ViewArgs) -> Result<(), Failure> {
     let output = args.output.clone().unwrap_or_else(|| args.plan.with_extension("html"));
     let inputs: Vec<PathBuf> = [&args.plan].into_iter().chain(&args.replay).cloned().collect();
     outputs::check(&inputs, &[(&output, Kind::Page)], args.overwrite)?;
-    let plan = regrasp::plan::read(&args.plan).map_err(Failure::bad_input)?;
+    let plan = regrasp::plan::read(&args.plan).map_err(Failure::refused)?;
     let replay = args.replay.as_deref().map(|path| replay::read(path, &plan)).transpose()?;
     let extras = Extras { replay, ..page::of_plan(&plan) };
     let bytes = write_page(&plan, &extras, &output).map_err(|reason| {
@@ -69,7 +69,7 @@ pub fn show_run(args: &PlanArgs, setup: &Setup<'_>, run: &Run, saved: Option<&Pa
     let plan = match &run.plan {
         Some(plan) => plan.clone(),
         None if args.view_graph => {
-            setup.plan_file(&run.outcome, args.seed, run.stopped_by).map_err(Failure::bad_input)?
+            setup.plan_file(&run.outcome, args.seed, run.stopped_by).map_err(Failure::refused)?
         }
         None => return tell("there is no motion to show; `--view-graph` shows what was tried"),
     };

@@ -136,15 +136,9 @@ pub fn slide_and_roll(example: &Example<'_>) -> Drawn {
     let edge = edge.ok_or("no path in GS_n")?;
     let [from, to] = [edge.from, edge.to].map(|node| &graph.nodes()[node.0 as usize]);
     let mut slid = Path::default();
-    example.setup.plugins().grasp_planner.connect(
-        &task,
-        from,
-        &Target::Grasp(to),
-        Some(&mut slid),
-        &mut context,
-    )?;
+    example.setup.plugins().grasp.connect(&task, from, &Target::Grasp(to), Some(&mut slid), &mut context)?;
     let mut rolled = Path::default();
-    let transfer = &example.setup.plugins().transfer_planner;
+    let transfer = &example.setup.plugins().transfer;
     transfer.connect(&task, from, &Target::Transfer(&to.X_HO), Some(&mut rolled), &mut context)?;
     let mut frames = Vec::new();
     for (name, path) in [("slides", &slid), ("rolls", &rolled)] {

@@ -3,6 +3,7 @@
 use crate::roles::Stash;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use regrasp::api::Refuse;
 use regrasp::host::HostError;
 use regrasp::run::RunError;
 use regrasp::run::scenario::{Place, ScenarioError};
@@ -59,8 +60,10 @@ pub fn host(py: Python<'_>, error: &HostError) -> PyErr {
         HostError::WrongSlot { slot, id, fits } => {
             json!({"slot": slot.name(), "plugin": id, "remedy": fits})
         }
-        HostError::Form { id, departure } => json!({"plugin": id, "key": departure.path.to_string()}),
-        HostError::Settings { id, .. } | HostError::Build { id, .. } => json!({"plugin": id}),
+        HostError::Settings { id, .. } | HostError::Build { id, .. } => {
+            let refusal = error.refusal();
+            json!({"plugin": id, "key": refusal.key, "value": refusal.value, "range": refusal.range})
+        }
         _ => json!({}),
     };
     exception(py, "PluginError", &error.to_string(), &fields)

@@ -52,7 +52,7 @@ fn anchor(entry: &Entry) -> String {
 }
 
 fn section(entry: &Entry, defaults: &Choices) -> Result<String, Failure> {
-    let schema = settings_schema(entry).map_err(Failure::bad_input)?;
+    let schema = settings_schema(entry).map_err(Failure::refused)?;
     let mut text = heading(3, &code(entry.id), &anchor(entry));
     text += &format!("{}\n\n", sentence(entry.summary));
     let slot = |&slot: &Slot| {

@@ -5,5 +5,6 @@ mod command_line;
 mod compare;
 mod desk;
 mod golden;
+mod json_errors;
 mod outputs;
 mod wording;

@@ -3,7 +3,7 @@
 use crate::guard::{caught, guarded, guarded_check};
 use regrasp_api::{
     Build, BuildError, Built, ClosedChainSampler, ContactModel, Entry, GraphStrategy, LocalPlanner, Parts,
-    SettingsError, StabilityTest, SurfaceParam,
+    SettingsError, StabilityTest, SurfaceParam, with_roles,
 };
 use std::marker::PhantomData;
 
@@ -19,7 +19,7 @@ pub trait Exported {
 pub struct GuardedEntry<E>(PhantomData<E>);
 
 macro_rules! builders {
-    ($($name:ident: $variant:ident($role:ident)),+) => {
+    ($([$variant:ident $name:ident $role:ident] $row:tt)+) => {
         impl<E: Exported> GuardedEntry<E> {
             $(fn $name(json: &str, parts: &Parts<'_>) -> Built<dyn $role> {
                 guarded(E::ENTRY.id, || match E::ENTRY.build {
@@ -34,14 +34,7 @@ macro_rules! builders {
         }
     };
 }
-builders! {
-    contact_model: ContactModel(ContactModel),
-    stability_test: StabilityTest(StabilityTest),
-    surface: Surface(SurfaceParam),
-    sampler: Sampler(ClosedChainSampler),
-    local_planner: LocalPlanner(LocalPlanner),
-    graph_strategy: GraphStrategy(GraphStrategy)
-}
+with_roles!(builders);
 
 impl<E: Exported> GuardedEntry<E> {
     /// The guarded entry.

@@ -5,11 +5,11 @@ use regrasp_api::{
     Action, Assessment, CallError, ClosedChainSampler, Cone, Configuration, Contact, ContactModel, Context,
     Criterion, FingerIndex, FingerSet, GraphStrategy, GraphView, Grasp, Hint, LocalPlanner, MAX_FINGERS,
     Path, PerFinger, Pose, PoseRequest, Projection, Random, Reached, Stability, StabilityTest, SurfaceParam,
-    SurfacePath, Target, Task, Vec3,
+    SurfacePath, Target, Task, Vec3, with_roles,
 };
 
 macro_rules! guardable {
-    ($($role:ident),+) => {$(
+    ($([$variant:ident $name:ident $role:ident] $row:tt)+) => {$(
         impl Guardable for dyn $role {
             fn guarded(object: Box<Self>, plugin: &'static str) -> Box<Self> {
                 Box::new(Guard::new(plugin, object))
@@ -17,7 +17,7 @@ macro_rules! guardable {
         }
     )+};
 }
-guardable!(ContactModel, StabilityTest, SurfaceParam, ClosedChainSampler, LocalPlanner, GraphStrategy);
+with_roles!(guardable);
 
 impl ContactModel for Guard<dyn ContactModel> {
     fn cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {

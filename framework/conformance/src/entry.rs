@@ -205,14 +205,14 @@ fn with(subject: &Subject<'_>, key: &str, value: &Value) -> Result<(), SettingsE
     (subject.entry.check)(&json!({ key: value }).to_string())
 }
 
-/// Builds the plugin, whatever its role, and drops it.
-fn try_build(entry: &Entry, json: &str, parts: &Parts<'_>) -> Result<(), BuildError> {
-    match entry.build {
-        Build::ContactModel(build) => build(json, parts).map(drop),
-        Build::StabilityTest(build) => build(json, parts).map(drop),
-        Build::Surface(build) => build(json, parts).map(drop),
-        Build::Sampler(build) => build(json, parts).map(drop),
-        Build::LocalPlanner(build) => build(json, parts).map(drop),
-        Build::GraphStrategy(build) => build(json, parts).map(drop),
-    }
+macro_rules! try_build {
+    ($([$role:ident $name:ident $trait:ident] $row:tt)+) => {
+        /// Builds the plugin, whatever its role, and drops it.
+        fn try_build(entry: &Entry, json: &str, parts: &Parts<'_>) -> Result<(), BuildError> {
+            match entry.build {
+                $(Build::$role(build) => build(json, parts).map(drop),)+
+            }
+        }
+    };
 }
+regrasp_api::with_roles!(try_build);

@@ -1,5 +1,6 @@
 //! Why a plan cannot be exported.
 
+use regrasp_api::PoseError;
 use regrasp_physics::PhysicsError;
 use regrasp_plan::ConvertError;
 use regrasp_world::{HandError, WorldError};
@@ -19,12 +20,12 @@ pub enum ExportError {
     #[error(transparent)]
     Motion(#[from] ConvertError),
     /// A pose of hand or obstacles.
-    #[error("`{key}`: {reason}")]
+    #[error("`{key}`: {error}")]
     Pose {
         /// Where it is in the plan's problem.
         key: String,
         /// What is wrong.
-        reason: String,
+        error: PoseError,
     },
     /// No motion.
     #[error("the plan has no motion to export")]

@@ -114,5 +114,5 @@ fn origins(hand: &HandDescription) -> Result<Vec<Vec<Pose>>, ExportError> {
 
 /// The pose that a description gives, or what is wrong at `key`.
 pub(crate) fn pose(description: &PoseDescription, key: impl Fn() -> String) -> Result<Pose, ExportError> {
-    description.pose().map_err(|reason| ExportError::Pose { key: key(), reason })
+    description.pose().map_err(|error| ExportError::Pose { key: key(), error })
 }

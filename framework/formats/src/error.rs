@@ -1,6 +1,6 @@
 //! Why a file is refused.
 
-use regrasp_api::{MeshError, MeshSourceError};
+use regrasp_api::{MeshError, MeshSourceError, Refusal, Refuse};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -76,6 +76,20 @@ impl FormatError {
     }
 }
 
+impl Refuse for FormatError {
+    fn refusal(&self) -> Refusal {
+        match self {
+            Self::Value { key, .. } => Refusal::new("value", self).key(key),
+            Self::Range { key, value, range } => {
+                Refusal::new("out-of-range", self).key(key).value(value).range(range)
+            }
+            Self::File { key, path, .. } => Refusal::new("file", self).key(key).value(path.display()),
+            Self::FileMesh { key, path, .. } => Refusal::new("mesh", self).key(key).value(path.display()),
+            Self::Mesh { key, .. } => Refusal::new("mesh", self).key(key),
+        }
+    }
+}
+
 /// Why a robot's file is refused: the file, the line where there is one, what is wrong there and what probably mends it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RobotFileError {
@@ -83,8 +97,17 @@ pub struct RobotFileError {
     pub file: PathBuf,
     /// The line, counted from 1.
     pub line: Option<usize>,
+    /// The key of whoever names the file that would mend it, such as `tips`.
+    pub key: Option<&'static str>,
     /// What is wrong, and the likely fix.
     pub message: String,
+}
+
+impl Refuse for RobotFileError {
+    fn refusal(&self) -> Refusal {
+        let refusal = Refusal::new("robot-file", &self.message).file(self.file.display()).line(self.line);
+        Refusal { key: self.key.map(str::to_owned), ..refusal }
+    }
 }
 
 impl fmt::Display for RobotFileError {
@@ -102,6 +125,8 @@ impl std::error::Error for RobotFileError {}
 pub struct RobotFault {
     /// The line, counted from 1.
     pub line: Option<usize>,
+    /// The key of whoever names the file that would mend it, such as `tips`.
+    pub key: Option<&'static str>,
     /// What is wrong, and the likely fix.
     pub message: String,
 }
@@ -109,16 +134,21 @@ pub struct RobotFault {
 impl RobotFault {
     /// A fault of the element that begins in `line`.
     pub fn at(line: usize, message: impl Into<String>) -> Self {
-        Self { line: Some(line), message: message.into() }
+        Self { line: Some(line), key: None, message: message.into() }
     }
 
     /// A fault of the file as a whole.
     pub fn of_file(message: impl Into<String>) -> Self {
-        Self { line: None, message: message.into() }
+        Self { line: None, key: None, message: message.into() }
+    }
+
+    /// A fault that a key of whoever names the file would mend.
+    pub fn of_key(key: &'static str, message: impl Into<String>) -> Self {
+        Self { key: Some(key), ..Self::of_file(message) }
     }
 
     /// The fault, of this file.
     pub fn within(self, file: &Path) -> RobotFileError {
-        RobotFileError { file: file.to_owned(), line: self.line, message: self.message }
+        RobotFileError { file: file.to_owned(), line: self.line, key: self.key, message: self.message }
     }
 }

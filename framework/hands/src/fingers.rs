@@ -75,7 +75,7 @@ pub(crate) fn moves(joint: &Joint) -> bool {
 fn named(tree: &Tree<'_>, tips: &[String]) -> Result<Vec<usize>, Fault> {
     for (i, name) in tips.iter().enumerate() {
         if tips[..i].contains(name) {
-            return Err(Fault::of_file(format!("the fingertip `{name}` is named twice")));
+            return Err(Fault::of_key("tips", format!("the fingertip `{name}` is named twice")));
         }
     }
     tips.iter().map(|name| tree.link(name).ok_or_else(|| unknown(tree, "fingertip", name))).collect()
@@ -89,10 +89,9 @@ fn unknown(tree: &Tree<'_>, what: &str, name: &str) -> Fault {
     };
     let (what_is, shown) = (if what == "palm" { "links" } else { "links at the ends" }, known.len().min(12));
     let dots = if shown < known.len() { ", …" } else { "" };
-    Fault::of_file(format!(
-        "there is no link `{name}` to be the {what}; {what_is}: {}{dots}",
-        known[..shown].join(", ")
-    ))
+    let key = if what == "palm" { "palm" } else { "tips" };
+    let shown = known[..shown].join(", ");
+    Fault::of_key(key, format!("there is no link `{name}` to be the {what}; {what_is}: {shown}{dots}"))
 }
 
 /// The last link that all tips hang on; the root where there is one tip alone.

@@ -137,9 +137,9 @@ fn convert(path: &Path, text: &str, options: &UrdfOptions) -> Result<UrdfHand, F
 }
 
 fn check_options(options: &UrdfOptions) -> Result<(), Fault> {
-    let within = |name: &str, value: f64, low: f64, high: f64, unit: &str| {
+    let within = |name: &'static str, value: f64, low: f64, high: f64, unit: &str| {
         let message = format!("`{name}` = {value} is outside {low}..={high}{unit}");
-        if (low..=high).contains(&value) { Ok(()) } else { Err(Fault::of_file(message)) }
+        if (low..=high).contains(&value) { Ok(()) } else { Err(Fault::of_key(name, message)) }
     };
     options.fingertip_radius.map_or(Ok(()), |r| within("fingertip_radius", r, 1e-4, 0.2, " m"))?;
     options.acceleration.map_or(Ok(()), |a| within("acceleration", a, 1e-3, 1e9, " rad/s²"))?;
@@ -205,7 +205,7 @@ impl Reader<'_> {
                 "`tip_offset` has {} entries; give one, or one for each of the {} fingers",
                 count.0, count.1
             );
-            return Err(Fault::of_file(message));
+            return Err(Fault::of_key("tip_offset", message));
         }
         let owned = self.owned()?;
         let palm = placed(owned.iter().filter(|part| part.owner == Owner::Palm));

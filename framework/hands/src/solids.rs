@@ -5,7 +5,7 @@ use nalgebra::Point3;
 use regrasp_api::{Mesh, MeshSource, PlacedShape, Pose, PoseDescription, Shape, Vec3};
 use regrasp_formats::Packages;
 use regrasp_formats::RobotFault as Fault;
-use regrasp_formats::{Geometry, Link, Solid, read_points};
+use regrasp_formats::{FormatError, Geometry, Link, Solid, read_points};
 use regrasp_world::{convex_hull, convex_pieces};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -160,8 +160,11 @@ impl Shaper {
     fn mesh(&mut self, solid: &Solid, name: &str, scale: Vec3) -> Result<(Vec<Piece>, String), Fault> {
         let path = self.packages.resolve(name).map_err(|tried| missing(solid.line, name, &tried))?;
         if !self.read.contains_key(&path) {
-            let raw = read_points(&path).map_err(|reason| {
-                Fault::at(solid.line, format!("cannot read the mesh `{}`: {reason}", path.display()))
+            let raw = read_points(&path).map_err(|error| match error {
+                FormatError::File { path, reason, .. } => {
+                    Fault::at(solid.line, format!("cannot read the mesh `{}`: {reason}", path.display()))
+                }
+                other => Fault::at(solid.line, other.to_string()),
             })?;
             let count = raw.0.len() as u32;
             if count == 0 || raw.1.iter().flatten().any(|&vertex| vertex >= count) {

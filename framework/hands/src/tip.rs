@@ -68,10 +68,13 @@ pub(crate) fn common_radius(tree: &Tree<'_>, fingers: &Fingers, shaper: &mut Sha
         String::new()
     };
     let names: Vec<String> = tips().map(|tip| format!("`{}`", tip.name)).collect();
-    Err(Fault::of_file(format!(
-        "the fingertips ({}) are not balls of one radius: give `fingertip_radius`, the radius (m) of the balls that are to stand for them{hint}",
-        names.join(", ")
-    )))
+    Err(Fault::of_key(
+        "fingertip_radius",
+        format!(
+            "the fingertips ({}) are not balls of one radius: give `fingertip_radius`, the radius (m) of the balls that are to stand for them{hint}",
+            names.join(", ")
+        ),
+    ))
 }
 
 impl Tip {

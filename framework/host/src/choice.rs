@@ -22,24 +22,9 @@ pub struct Choices {
     choices: [Choice; Slot::ALL.len()],
 }
 
-/// The paper's choice for a slot: its section IV, "Planning algorithm", names rolling transfers, the random loop generator, RRT for regrasps
-/// and the biased α.
-fn default_id(slot: Slot) -> &'static str {
-    match slot {
-        Slot::ContactModel => "contact-model/pcwf",
-        Slot::StabilityTest => "stability-test/force-closure",
-        Slot::Surface => "surface/geodesic",
-        Slot::Sampler => "sampler/rlg",
-        Slot::GraspPlanner => "local-planner/linear",
-        Slot::TransferPlanner => "local-planner/rolling",
-        Slot::RegraspPlanner => "local-planner/rrt",
-        Slot::GraphStrategy => "graph-strategy/interleaved",
-    }
-}
-
 impl Default for Choices {
     fn default() -> Self {
-        let choice = |slot| Choice { id: default_id(slot).to_owned(), settings: Map::new() };
+        let choice = |slot: Slot| Choice { id: slot.default_plugin().to_owned(), settings: Map::new() };
         Self { choices: Slot::ALL.map(choice) }
     }
 }

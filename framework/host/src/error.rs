@@ -2,7 +2,7 @@
 
 use crate::LoadError;
 use regrasp_api::did_you_mean;
-use regrasp_api::{BuildError, CallError, SettingsError, Slot};
+use regrasp_api::{BuildError, CallError, Refusal, Refuse, SettingsError, Slot};
 use thiserror::Error;
 
 /// A plugin cannot be found, configured or built.
@@ -86,6 +86,36 @@ pub enum HostError {
         /// The fewest contacts that can be stable under it.
         fewest: usize,
     },
+}
+
+impl Refuse for HostError {
+    fn refusal(&self) -> Refusal {
+        match self {
+            Self::Duplicate(id) => Refusal::new("duplicate-plugin", self).value(id),
+            Self::WrongRole { id, .. } => Refusal::new("wrong-role", self).value(id),
+            Self::UnknownSlot { name, near } => Refusal::new("unknown-slot", self)
+                .value(name)
+                .range(slot_names().join(", "))
+                .remedy(did_you_mean(near)),
+            Self::UnknownPlugin { slot, id, near, known } => Refusal::new("unknown-plugin", self)
+                .key(slot.name())
+                .value(id)
+                .range(known.join(", "))
+                .remedy(did_you_mean(near)),
+            Self::WrongSlot { slot, id, fits } => {
+                Refusal::new("wrong-slot", self).key(slot.name()).value(id).range(fits.join(", "))
+            }
+            Self::Settings { error, .. } => error.refusal().told(self),
+            Self::Build { error, .. } => error.refusal().told(self),
+            Self::Load(error) => error.refusal(),
+            Self::Call(error) => error.refusal(),
+            Self::TooFewFingers { fingers, fewest, .. } => Refusal::new("too-few-fingers", self)
+                .key("hand")
+                .value(fingers)
+                .range(format!("{}..", fewest + 1))
+                .remedy("use a hand with more fingers or another contact model"),
+        }
+    }
 }
 
 fn slot_names() -> Vec<String> {

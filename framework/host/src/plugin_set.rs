@@ -1,66 +1,51 @@
-//! The eight plugin objects of one run.
+//! The plugin objects of one run.
 
 use crate::choice::settings_text;
 use crate::{Choice, Choices, HostError, Registry, Source};
 use regrasp_abi::{Guardable, guarded};
 use regrasp_api::{
-    Build, BuildError, Built, ClosedChainSampler, ContactModel, GraphStrategy, LocalPlanner, Parts, Slot,
-    StabilityTest, SurfaceParam, unless_fault,
+    Build, BuildError, Built, ClosedChainSampler, ContactModel, GraphStrategy, LocalPlanner, Parts, Plugins,
+    Slot, StabilityTest, SurfaceParam, unless_fault, with_slots,
 };
 
-/// A plugin object for each slot.
-pub struct PluginSet {
-    /// Slot `contact-model`.
-    pub contact_model: Box<dyn ContactModel>,
-    /// Slot `stability-test`.
-    pub stability: Box<dyn StabilityTest>,
-    /// Slot `surface`.
-    pub surface: Box<dyn SurfaceParam>,
-    /// Slot `sampler`.
-    pub sampler: Box<dyn ClosedChainSampler>,
-    /// Slot `local-planner.grasp`.
-    pub grasp_planner: Box<dyn LocalPlanner>,
-    /// Slot `local-planner.transfer`.
-    pub transfer_planner: Box<dyn LocalPlanner>,
-    /// Slot `local-planner.regrasp`.
-    pub regrasp_planner: Box<dyn LocalPlanner>,
-    /// Slot `graph-strategy`.
-    pub strategy: Box<dyn GraphStrategy>,
-}
+macro_rules! plugin_set {
+    ($([$slot:ident $field:ident $trait:ident] ($role:ident, $id:tt, $default:tt, $doc:tt))+) => {
+        /// A plugin object for each slot.
+        pub struct PluginSet {
+            $(#[doc = $doc] pub $field: Box<dyn $trait>,)+
+        }
 
-impl PluginSet {
-    /// Builds the chosen plugins for a hand and an object, and refuses a hand with too few fingers for the contact model.
-    pub fn build(registry: &Registry, choices: &Choices, parts: &Parts<'_>) -> Result<Self, HostError> {
-        let builder = Builder { registry, choices, parts };
-        let contact_model = builder.contact_model()?;
-        builder.check_fingers(contact_model.as_ref())?;
-        Ok(Self {
-            contact_model,
-            stability: builder.stability()?,
-            surface: builder.surface()?,
-            sampler: builder.sampler()?,
-            grasp_planner: builder.local_planner(Slot::GraspPlanner)?,
-            transfer_planner: builder.local_planner(Slot::TransferPlanner)?,
-            regrasp_planner: builder.local_planner(Slot::RegraspPlanner)?,
-            strategy: builder.strategy()?,
-        })
-    }
+        impl PluginSet {
+            /// Builds the chosen plugins for a hand and an object, and refuses a hand with too few fingers for the contact model.
+            pub fn build(registry: &Registry, choices: &Choices, parts: &Parts<'_>) -> Result<Self, HostError> {
+                let builder = Builder { registry, choices, parts };
+                builder.check_fingers(builder.contact_model()?.as_ref())?;
+                Ok(Self { $($field: builder.$field()?,)+ })
+            }
+
+            /// The plugins, lent.
+            pub fn plugins(&self) -> Plugins<'_> {
+                Plugins { $($field: self.$field.as_ref(),)+ }
+            }
+        }
+
+        impl Builder<'_> {
+            // The entry's role is that of the slot, as `Registry::lookup` makes sure.
+            $(fn $field(&self) -> Result<Box<dyn $trait>, HostError> {
+                self.build(Slot::$slot, |build, text, parts| match build {
+                    Build::$role(make) => make(text, parts),
+                    _ => Err(BuildError::Unsupported("the entry builds a plugin of another role".into())),
+                })
+            })+
+        }
+    };
 }
+with_slots!(plugin_set);
 
 struct Builder<'a> {
     registry: &'a Registry,
     choices: &'a Choices,
     parts: &'a Parts<'a>,
-}
-
-/// Builds one slot's plugin; the entry's role is that of the slot, as `Registry::lookup` makes sure.
-macro_rules! build_slot {
-    ($builder:expr, $slot:expr, $role:ident) => {
-        $builder.build($slot, |build, text, parts| match build {
-            Build::$role(make) => make(text, parts),
-            _ => Err(BuildError::Unsupported("the entry builds a plugin of another role".into())),
-        })
-    };
 }
 
 impl Builder<'_> {
@@ -78,30 +63,6 @@ impl Builder<'_> {
             Source::Library(_) => make(),
         };
         built.map_err(|error| HostError::Build { id: entry.id.to_owned(), error })
-    }
-
-    fn contact_model(&self) -> Result<Box<dyn ContactModel>, HostError> {
-        build_slot!(self, Slot::ContactModel, ContactModel)
-    }
-
-    fn stability(&self) -> Result<Box<dyn StabilityTest>, HostError> {
-        build_slot!(self, Slot::StabilityTest, StabilityTest)
-    }
-
-    fn surface(&self) -> Result<Box<dyn SurfaceParam>, HostError> {
-        build_slot!(self, Slot::Surface, Surface)
-    }
-
-    fn sampler(&self) -> Result<Box<dyn ClosedChainSampler>, HostError> {
-        build_slot!(self, Slot::Sampler, Sampler)
-    }
-
-    fn local_planner(&self, slot: Slot) -> Result<Box<dyn LocalPlanner>, HostError> {
-        build_slot!(self, slot, LocalPlanner)
-    }
-
-    fn strategy(&self) -> Result<Box<dyn GraphStrategy>, HostError> {
-        build_slot!(self, Slot::GraphStrategy, GraphStrategy)
     }
 
     fn check_fingers(&self, contact_model: &dyn ContactModel) -> Result<(), HostError> {

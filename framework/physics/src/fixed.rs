@@ -20,7 +20,7 @@ pub(crate) fn fixed_shapes(problem: &Problem) -> Result<Vec<Placed>, PhysicsErro
 }
 
 fn fixed_shape(placed: &PlacedShape) -> Result<Placed, PhysicsError> {
-    let pose = placed.pose.pose().map_err(PhysicsError::Shape)?;
+    let pose = placed.pose.pose().map_err(|error| PhysicsError::Shape(error.to_string()))?;
     let (at, shape) = match &placed.shape {
         Shape::Sphere { radius } => (Vec3::zeros(), SharedShape::ball(*radius)),
         Shape::Box { size: [x, y, z] } => (Vec3::zeros(), SharedShape::cuboid(x / 2.0, y / 2.0, z / 2.0)),

@@ -13,6 +13,28 @@ use thiserror::Error;
 /// The facet of contacts that come from a file: a plan does not say which plugin's coordinates it was made with.
 pub const UNKNOWN_FACET: u32 = u32::MAX;
 
+/// What is wrong with one state of a file.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum StateError {
+    /// It was made for another hand.
+    #[error("other fingers or joints than the plan's hand has; `regrasp verify` says more")]
+    OtherHand,
+    /// Joints and contacts of different numbers of fingers, or of too many.
+    #[error(
+        "joints of {joints} fingers and contacts of {contacts}; both must be 1 to {MAX_FINGERS} and the same"
+    )]
+    Fingers {
+        /// Of how many fingers it has joints.
+        joints: usize,
+        /// Of how many it has contacts.
+        contacts: usize,
+    },
+    /// A finger with too many joints.
+    #[error("a finger with {0} joints; at most {MAX_FINGER_JOINTS}")]
+    Joints(usize),
+}
+
 /// Why segments and motion cannot be turned into each other.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
@@ -28,14 +50,14 @@ pub enum ConvertError {
         times: usize,
     },
     /// A state does not have the hand's form.
-    #[error("segment {segment}, state {state}: {reason}")]
+    #[error("segment {segment}, state {state}: {error}")]
     Form {
         /// The segment.
         segment: usize,
         /// The state.
         state: usize,
         /// What is wrong.
-        reason: String,
+        error: StateError,
     },
     /// A regrasp without its finger, or a transfer with one.
     #[error(
@@ -110,7 +132,7 @@ pub fn motion(plan: &Plan) -> Result<Motion, ConvertError> {
             |(state, record): (usize, &StateRecord)| {
                 fits(record, fingers)
                     .and_then(|()| configuration(record))
-                    .map_err(|reason| ConvertError::Form { segment: index, state, reason })
+                    .map_err(|error| ConvertError::Form { segment: index, state, error })
             };
         Ok(Segment {
             kind,
@@ -122,26 +144,23 @@ pub fn motion(plan: &Plan) -> Result<Motion, ConvertError> {
 }
 
 /// Whether a state has the hand's fingers and joints.
-fn fits(state: &StateRecord, fingers: &[FingerDescription]) -> Result<(), String> {
+fn fits(state: &StateRecord, fingers: &[FingerDescription]) -> Result<(), StateError> {
     let (joints, wanted) =
         (state.joints.iter().map(Vec::len), fingers.iter().map(|finger| finger.joint.len()));
     if joints.eq(wanted) {
         return Ok(());
     }
-    Err("other fingers or joints than the plan's hand has; `regrasp verify` says more".into())
+    Err(StateError::OtherHand)
 }
 
 /// The configuration that a file's state describes; `Err` says what does not fit.
-pub fn configuration(state: &StateRecord) -> Result<Configuration, String> {
+pub fn configuration(state: &StateRecord) -> Result<Configuration, StateError> {
     let count = state.joints.len();
     if count == 0 || count > MAX_FINGERS || state.contacts.len() != count {
-        return Err(format!(
-            "joints of {count} fingers and contacts of {}; both must be 1 to {MAX_FINGERS} and the same",
-            state.contacts.len()
-        ));
+        return Err(StateError::Fingers { joints: count, contacts: state.contacts.len() });
     }
     if let Some(joints) = state.joints.iter().find(|joints| joints.len() > MAX_FINGER_JOINTS) {
-        return Err(format!("a finger with {} joints; at most {MAX_FINGER_JOINTS}", joints.len()));
+        return Err(StateError::Joints(joints.len()));
     }
     let joints = |finger: FingerIndex| {
         let values = &state.joints[finger.index()];

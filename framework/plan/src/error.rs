@@ -1,5 +1,6 @@
 //! What can go wrong with a plan file, and what to do about it.
 
+use regrasp_api::{Refusal, Refuse};
 use std::{io, path::PathBuf};
 use thiserror::Error;
 
@@ -130,4 +131,42 @@ pub enum WriteError {
         /// Why.
         source: io::Error,
     },
+}
+
+impl Refuse for ReadError {
+    fn refusal(&self) -> Refusal {
+        let (code, path) = match self {
+            Self::Missing { path } => ("missing-file", path),
+            Self::Unreadable { path, .. } => ("unreadable", path),
+            Self::IsFolder { path } => ("is-folder", path),
+            Self::Empty { path } => ("empty-file", path),
+            Self::Truncated { path, .. } => ("truncated", path),
+            Self::Syntax { path, .. } => ("syntax", path),
+            Self::Format { path, .. } => ("not-a-plan", path),
+            Self::Version { path, .. } => ("plan-version", path),
+            Self::Content { path, .. } => ("plan-content", path),
+        };
+        let refusal = Refusal::new(code, self).file(path.display());
+        match self {
+            Self::Truncated { line, .. } => refusal.line(Some(*line)),
+            Self::Format { found, .. } => refusal.key("format").value(found),
+            Self::Version { found, known, .. } => {
+                refusal.key("version").value(found).range(format!("{}..={known}", crate::OLDEST_VERSION))
+            }
+            _ => refusal,
+        }
+    }
+}
+
+impl Refuse for WriteError {
+    fn refusal(&self) -> Refusal {
+        let (code, path) = match self {
+            Self::NotFinite { place } => return Refusal::new("not-finite", self).key(place),
+            Self::DiskFull { path } => ("disk-full", path),
+            Self::NoFolder { path } => ("no-folder", path),
+            Self::IsFolder { path } => ("is-folder", path),
+            Self::Failed { path, .. } => ("not-written", path),
+        };
+        Refusal::new(code, self).file(path.display())
+    }
 }

@@ -1,6 +1,6 @@
 //! Why a problem cannot be planned at all; "no plan found" is not among these but an outcome.
 
-use regrasp_api::{BodyPair, CallError, FingerIndex, Reason};
+use regrasp_api::{BodyPair, CallError, FingerIndex, PoseError, Reason, Refusal, Refuse};
 use std::fmt;
 use thiserror::Error;
 
@@ -27,12 +27,12 @@ impl fmt::Display for End {
 #[non_exhaustive]
 pub enum PlanError {
     /// A pose that cannot be read.
-    #[error("`{end}.pose`: {reason}")]
+    #[error("`{end}.pose`: {error}")]
     Pose {
         /// Which end.
         end: End,
         /// What is wrong with it.
-        reason: String,
+        error: PoseError,
     },
     /// A given grasp that cannot be read: wrong number of fingers or joints, a contact away from the surface.
     #[error("`{end}.grasp`: {reason}")]
@@ -89,6 +89,22 @@ pub enum PlanError {
     /// A plugin failed.
     #[error(transparent)]
     Call(#[from] CallError),
+}
+
+impl Refuse for PlanError {
+    fn refusal(&self) -> Refusal {
+        let problem = |key: String| Refusal::new("problem", self).key(key);
+        match self {
+            Self::Pose { end, error } => error.refusal().told(self).below(&format!("{end}.pose")),
+            Self::Grasp { end, .. } | Self::Unstable { end, .. } => problem(format!("{end}.grasp")),
+            Self::Finger { end, finger, .. } => problem(format!("{end}.grasp[{}]", finger.0)),
+            Self::Collision { end, .. } => problem(end.to_string()),
+            Self::TooFewFingers { .. } => problem("hand".into()),
+            Self::Coincide(goal) => problem(format!("goal[{goal}]")),
+            Self::Timing(_) => Refusal::new("timing", self),
+            Self::Call(error) => error.refusal(),
+        }
+    }
 }
 
 /// A body in words.

@@ -39,5 +39,4 @@ pub use error::{End, PlanError};
 pub use record::{EdgeRecord, Fate, GraphRecord};
 pub use report::{Clock, Outcome, Progress, Silent, Status, Stuck};
 pub use request::Request;
-pub use session::Drivers;
 pub use solve::solve;

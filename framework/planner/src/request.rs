@@ -1,10 +1,7 @@
 //! What a run is asked for.
 
 use crate::report::{Clock, Progress};
-use crate::session::Drivers;
-use regrasp_api::{
-    Clearance, ContactModel, Hand, Interrupt, ObjectModel, Problem, StabilityTest, SurfaceParam,
-};
+use regrasp_api::{Clearance, Hand, Interrupt, ObjectModel, Plugins, Problem};
 
 /// Everything a run needs.
 #[derive(Clone, Copy)]
@@ -17,14 +14,8 @@ pub struct Request<'a> {
     pub clearance: &'a dyn Clearance,
     /// The object.
     pub object: &'a ObjectModel,
-    /// Which wrenches contacts transmit.
-    pub contact_model: &'a dyn ContactModel,
-    /// Which grasps are stable.
-    pub stability: &'a dyn StabilityTest,
-    /// The object's surface.
-    pub surface: &'a dyn SurfaceParam,
-    /// The plugins that drive the search.
-    pub drivers: Drivers<'a>,
+    /// The plugins.
+    pub plugins: Plugins<'a>,
     /// Seed of all random streams.
     pub seed: u64,
     /// How many threads compute; the result does not depend on it.

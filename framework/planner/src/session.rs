@@ -2,14 +2,14 @@
 
 use rayon::prelude::*;
 use regrasp_api::{
-    CallError, ClosedChainSampler, Context, GraphStrategy, Interrupt, LocalPlanner, Random, Tally, Task,
-    unless_fault,
+    CallError, ClosedChainSampler, Context, GraphStrategy, Interrupt, LocalPlanner, Plugins, Random, Tally,
+    Task, unless_fault,
 };
 use std::collections::VecDeque;
 
 /// The plugins that drive the search; contact model, stability test and surface are in the [`Task`].
 #[derive(Clone, Copy)]
-pub struct Drivers<'a> {
+pub(crate) struct Drivers<'a> {
     /// Samples closed chains.
     pub sampler: &'a dyn ClosedChainSampler,
     /// Connects inside GS_n.
@@ -20,6 +20,14 @@ pub struct Drivers<'a> {
     pub regrasp: &'a dyn LocalPlanner,
     /// Decides what to do next.
     pub strategy: &'a dyn GraphStrategy,
+}
+
+impl<'a> Drivers<'a> {
+    /// Those of all plugins.
+    pub fn of(plugins: &Plugins<'a>) -> Self {
+        let Plugins { sampler, grasp, transfer, regrasp, strategy, .. } = *plugins;
+        Self { sampler, grasp, transfer, regrasp, strategy }
+    }
 }
 
 /// The kinds of expensive calls: each with its own random streams.

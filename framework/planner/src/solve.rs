@@ -7,7 +7,7 @@ use crate::graph::Graph;
 use crate::report::Outcome;
 use crate::request::Request;
 use crate::run::Run;
-use crate::session::Session;
+use crate::session::{Drivers, Session};
 use regrasp_abi::GuardedService;
 use regrasp_api::{Admissible, FingerSet, Pose, PoseDescription, Problem, Tally, Task, Vec3};
 use regrasp_plan::Statistics;
@@ -21,9 +21,9 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
     let task = Task {
         hand: request.hand,
         clearance: request.clearance,
-        contact_model: request.contact_model,
-        stability: request.stability,
-        surface: request.surface,
+        contact_model: request.plugins.contact_model,
+        stability: request.plugins.stability,
+        surface: request.plugins.surface,
         admissible: &admissible,
         object: request.object,
         g_H: Vec3::from(request.problem.gravity),
@@ -35,7 +35,7 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
     let choices = finger_choices(&task)?;
     let pool = pool(request.threads);
     let session = Session {
-        plugins: request.drivers,
+        plugins: Drivers::of(&request.plugins),
         seed: request.seed,
         interrupt: request.interrupt,
         pool: pool.as_ref(),
@@ -59,7 +59,7 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
 
 /// Start and goals as poses; two in turn that coincide are refused where no grasp tells them apart.
 fn poses(problem: &Problem) -> Result<Vec<Pose>, PlanError> {
-    let read = |end, pose: &PoseDescription| pose.pose().map_err(|reason| PlanError::Pose { end, reason });
+    let read = |end, pose: &PoseDescription| pose.pose().map_err(|error| PlanError::Pose { end, error });
     let mut poses = vec![read(End::Start, &problem.start.pose)?];
     for (index, goal) in problem.goal.iter().enumerate() {
         let pose = read(End::Goal(index), &goal.pose)?;

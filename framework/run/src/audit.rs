@@ -2,9 +2,9 @@
 
 use crate::setup::Solve;
 use crate::{Run, RunError, RunOptions, Setup};
-use regrasp_api::{Hand, Slot};
+use regrasp_api::{Hand, Plugins, Slot, with_slots};
 use regrasp_audit::{Audited, Auditor, Breach};
-use regrasp_planner::{Drivers, Outcome, PlanError, Request};
+use regrasp_planner::{Outcome, PlanError, Request};
 use serde_json::{Value, json};
 
 /// What [`AuditCase`] files begin with.
@@ -47,28 +47,17 @@ impl Setup<'_> {
     }
 }
 
-/// Plans by `solve` with every plugin of the request under audit.
-pub fn audited(request: &Request<'_>, auditor: &Auditor<'_>, solve: Solve<'_>) -> Result<Outcome, PlanError> {
-    let drivers = &request.drivers;
-    let contact_model = Audited::new(request.contact_model, Slot::ContactModel, auditor);
-    let stability = Audited::new(request.stability, Slot::StabilityTest, auditor);
-    let surface = Audited::new(request.surface, Slot::Surface, auditor);
-    let sampler = Audited::new(drivers.sampler, Slot::Sampler, auditor);
-    let grasp = Audited::new(drivers.grasp, Slot::GraspPlanner, auditor);
-    let transfer = Audited::new(drivers.transfer, Slot::TransferPlanner, auditor);
-    let regrasp = Audited::new(drivers.regrasp, Slot::RegraspPlanner, auditor);
-    let strategy = Audited::new(drivers.strategy, Slot::GraphStrategy, auditor);
-    solve(&Request {
-        contact_model: &contact_model,
-        stability: &stability,
-        surface: &surface,
-        drivers: Drivers {
-            sampler: &sampler,
-            grasp: &grasp,
-            transfer: &transfer,
-            regrasp: &regrasp,
-            strategy: &strategy,
-        },
-        ..*request
-    })
+macro_rules! audited {
+    ($([$slot:ident $field:ident $trait:ident] $row:tt)+) => {
+        /// Plans by `solve` with every plugin of the request under audit.
+        pub fn audited(
+            request: &Request<'_>,
+            auditor: &Auditor<'_>,
+            solve: Solve<'_>,
+        ) -> Result<Outcome, PlanError> {
+            $(let $field = Audited::new(request.plugins.$field, Slot::$slot, auditor);)+
+            solve(&Request { plugins: Plugins { $($field: &$field),+ }, ..*request })
+        }
+    };
 }
+with_slots!(audited);

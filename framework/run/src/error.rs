@@ -1,7 +1,7 @@
 //! Why a run cannot be made at all.
 
 use crate::scenario::{Scenario, ScenarioError};
-use regrasp_api::{Body, BodyPair, FingerGrasp};
+use regrasp_api::{Body, BodyPair, FingerGrasp, Refusal, Refuse};
 use regrasp_host::HostError;
 use regrasp_plan::ConvertError;
 use regrasp_planner::{End, PlanError};
@@ -25,6 +25,17 @@ pub enum RunError {
     Convert(#[from] ConvertError),
 }
 
+impl Refuse for RunError {
+    fn refusal(&self) -> Refusal {
+        match self {
+            Self::Scenario(error) => error.refusal(),
+            Self::Host(error) => error.refusal(),
+            Self::Call(error) => error.refusal(),
+            Self::Convert(_) => Refusal::new("defect", self),
+        }
+    }
+}
+
 impl RunError {
     pub(crate) fn of_planner(scenario: &Scenario, error: PlanError) -> Self {
         match error {
@@ -43,15 +54,17 @@ impl RunError {
     }
 }
 
-/// The message for two bodies that are too close at the place `key`.
-pub(crate) fn collision(scenario: &Scenario, key: &str, pair: BodyPair, fix: &str) -> String {
+/// The refusal of two bodies that are too close at the place `key`.
+pub(crate) fn collision(scenario: &Scenario, key: &str, pair: BodyPair, fix: &str) -> Refusal {
     let problem = &scenario.problem;
     let clear = problem.limits.tolerances.clearance + problem.limits.resolution.clearance;
     let [a, b] = [pair.0, pair.1].map(|body: Body| problem.name_of(body));
-    format!("`{key}`: {a} and {b} overlap, or are closer than the clearance of {:.3} mm; {fix}", clear * 1e3)
+    let clear = format!("{:.3} mm", clear * 1e3);
+    let message = format!("`{key}`: {a} and {b} overlap, or are closer than the clearance of {clear}; {fix}");
+    Refusal::new("collision", &message).key(key).value(format!("{a}, {b}")).range(clear).remedy(fix)
 }
 
-fn unstable(scenario: &Scenario, end: End, friction: f64) -> String {
+fn unstable(scenario: &Scenario, end: End, friction: f64) -> Refusal {
     let problem = &scenario.problem;
     let grasp = match end {
         End::Start => problem.start.grasp.as_deref(),
@@ -65,8 +78,7 @@ fn unstable(scenario: &Scenario, end: End, friction: f64) -> String {
         [] => "no finger has a `contact`, so that nothing holds the object".to_owned(),
         names => format!("the object is not held by {} contacts ({})", names.len(), names.join(", ")),
     };
-    format!(
-        "`{end}.grasp`: the grasp is not stable: with friction {friction}, {held}; give more fingers a `contact`, spread the contacts round \
-         the object, or raise the friction"
-    )
+    let fix = "give more fingers a `contact`, spread the contacts round the object, or raise the friction";
+    let message = format!("`{end}.grasp`: the grasp is not stable: with friction {friction}, {held}; {fix}");
+    Refusal::new("unstable", &message).key(format!("{end}.grasp")).value(friction).remedy(fix)
 }

@@ -4,10 +4,10 @@ use crate::RunError;
 use crate::error;
 use crate::scenario::{Scenario, ScenarioError};
 use regrasp_abi::GuardedService;
-use regrasp_api::{Clearance, Hand, Interrupt, Parts, Pose, PoseDescription};
+use regrasp_api::{Clearance, Hand, Interrupt, Parts, Pose, PoseDescription, PoseError, Refuse};
 use regrasp_host::{Choices, PluginSet, Registry, Source};
 use regrasp_plan::{Plan, StoppedBy};
-use regrasp_planner::{Clock, Drivers, Outcome, PlanError, Progress, Request, Status, Stuck};
+use regrasp_planner::{Clock, Outcome, PlanError, Progress, Request, Status, Stuck};
 use regrasp_verify::Verdict;
 use regrasp_world::SceneClearance;
 use std::iter;
@@ -181,7 +181,6 @@ impl<'a> Setup<'a> {
     }
 
     fn solve(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Outcome, RunError> {
-        let plugins = &self.plugins;
         let (hand, clearance) = (self.hand(), &self.clearance as &dyn Clearance);
         let guarded = (GuardedService(hand), GuardedService(clearance));
         let request = Request {
@@ -189,16 +188,7 @@ impl<'a> Setup<'a> {
             hand: if self.has_loaded { &guarded.0 } else { hand },
             clearance: if self.has_loaded { &guarded.1 } else { clearance },
             object: &self.scenario.object,
-            contact_model: plugins.contact_model.as_ref(),
-            stability: plugins.stability.as_ref(),
-            surface: plugins.surface.as_ref(),
-            drivers: Drivers {
-                sampler: plugins.sampler.as_ref(),
-                grasp: plugins.grasp_planner.as_ref(),
-                transfer: plugins.transfer_planner.as_ref(),
-                regrasp: plugins.regrasp_planner.as_ref(),
-                strategy: plugins.strategy.as_ref(),
-            },
+            plugins: self.plugins.plugins(),
             seed: options.seed,
             threads: options.threads,
             interrupt: options.stop,
@@ -220,7 +210,8 @@ fn poses(scenario: &Scenario, clearance: &SceneClearance) -> Result<Vec<Pose>, S
     let start = ("start.pose".to_owned(), &problem.start.pose);
     let goals = problem.goal.iter().enumerate().map(|(i, goal)| (format!("goal[{i}].pose"), &goal.pose));
     let free = |(key, pose): (String, &PoseDescription)| {
-        let X_HO = pose.pose().map_err(|reason| scenario.refuse(&format!("`{key}`: {reason}")))?;
+        let named = |error: PoseError| error.refusal().told(&format!("`{key}`: {error}")).below(&key);
+        let X_HO = pose.pose().map_err(|error| scenario.refuse(&named(error)))?;
         let overlap = |pair| scenario.refuse(&error::collision(scenario, &key, pair, "move one of them"));
         clearance.object_free(&X_HO).map_err(overlap).map(|()| X_HO)
     };

@@ -84,7 +84,7 @@ impl Chain {
         if !(1..=MAX_FINGER_JOINTS).contains(&count) {
             return Err(format!("{count} joints, 1 to {MAX_FINGER_JOINTS} are possible"));
         }
-        let X_HBase = finger.base.pose()?;
+        let X_HBase = finger.base.pose().map_err(|error| error.to_string())?;
         let p_LTip = Vec3::from(finger.tip);
         if !p_LTip.iter().all(|x| x.is_finite()) {
             return Err("`tip` is not finite".into());
@@ -147,7 +147,7 @@ fn driven(finger: &FingerDescription) -> Result<Vec<Driven>, String> {
 impl Joint {
     fn new(joint: &JointDescription) -> Result<Self, String> {
         let named = |what: &str| format!("joint `{}`: {what}", joint.name);
-        let X_PJ = joint.origin.pose().map_err(|error| named(&error))?;
+        let X_PJ = joint.origin.pose().map_err(|error| named(&error.to_string()))?;
         let axis = Vec3::from(joint.axis);
         if !(axis.norm().is_finite() && axis.norm() > 1e-9) {
             return Err(named("`axis` must be finite and not zero"));

@@ -21,6 +21,6 @@ mod track;
 mod verdict;
 mod walk;
 
-pub use series::{StateFigures, series};
+pub use series::{SeriesError, StateFigures, series};
 pub use verdict::{Check, Verdict};
 pub use walk::verify;

@@ -9,6 +9,7 @@ use crate::track::{self, Frames, Leg};
 use crate::walk::{prepare, travel, weight_H};
 use regrasp_api::{Body, BodyPair, FingerIndex};
 use regrasp_plan::Plan;
+use std::fmt;
 
 /// The figures of one state of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,16 +21,28 @@ pub struct StateFigures {
     pub clearance: Option<(f64, BodyPair)>,
 }
 
+/// Why a plan has no figures along its motion: it does not fit its own hand, or its scene makes no sense.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SeriesError(String);
+
+impl fmt::Display for SeriesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.0)
+    }
+}
+
+impl std::error::Error for SeriesError {}
+
 /// The figures of every state, segment after segment; `Err` says what in the plan makes no sense.
 ///
 /// At the states alone: between them a clearance can be smaller. Cost: below 0.5 ms a state of four fingers, nearly all of it for the margin in
 /// transfers (a conic program for each grasp).
-pub fn series(plan: &Plan) -> Result<Vec<Vec<StateFigures>>, String> {
+pub fn series(plan: &Plan) -> Result<Vec<Vec<StateFigures>>, SeriesError> {
     let problem = &plan.scenario.problem;
-    let (hand, object) = prepare(problem)?;
-    let unsound = |_| "some states do not fit the hand; `verify` names them".to_owned();
+    let (hand, object) = prepare(problem).map_err(SeriesError)?;
+    let unsound = |_| SeriesError("some states do not fit the hand; `verify` names them".into());
     let legs = track::legs(&plan.segments, &hand).map_err(unsound)?;
-    let scene = Scene::new(problem, &object, &hand, &travel(&hand, &legs))?;
+    let scene = Scene::new(problem, &object, &hand, &travel(&hand, &legs)).map_err(SeriesError)?;
     let tolerances = &problem.limits.tolerances;
     let mut figures = Figures {
         hand: &hand,

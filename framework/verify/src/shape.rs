@@ -23,7 +23,7 @@ pub(crate) enum Core {
 impl Core {
     /// The core and radius of a described shape, in the frame of what it belongs to; `Err` says what makes no sense in it.
     pub(crate) fn of(placed: &PlacedShape) -> Result<(Self, f64), String> {
-        let X = placed.pose.pose()?;
+        let X = placed.pose.pose().map_err(|error| error.to_string())?;
         let point = |p: [f64; 3]| X * Point3::from(p);
         let positive = |x: f64, what: &str| {
             if x > 0.0 && x < 1e6 {

@@ -37,7 +37,7 @@ fn a_touching_finger_is_no_collision_and_a_lifted_one_counts() {
 fn a_plan_without_sense_has_no_figures() {
     let mut plan = common::plan(2);
     plan.segments[0].states[0].joints.pop();
-    assert!(series(&plan).unwrap_err().contains("verify"));
+    assert!(series(&plan).unwrap_err().to_string().contains("verify"));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Why a plan cannot be shown.
 
+use regrasp_api::PoseError;
 use regrasp_world::{HandError, WorldError};
 use thiserror::Error;
 
@@ -14,12 +15,12 @@ pub enum ViewError {
     #[error("the plan's {0}")]
     World(#[from] WorldError),
     /// A pose of palm, link or obstacle cannot be read.
-    #[error("`{key}`: {reason}")]
+    #[error("`{key}`: {error}")]
     Pose {
         /// Where in the plan's problem.
         key: String,
         /// What is wrong with it.
-        reason: String,
+        error: PoseError,
     },
     /// A segment or state does not fit the hand, or holds a number that is not finite.
     #[error("segment {segment}, state {state}: {reason}; `regrasp verify` says more")]

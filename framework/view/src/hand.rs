@@ -139,7 +139,7 @@ fn shape(placed: &PlacedShape, key: &str) -> Result<ShapeData, ViewError> {
 }
 
 pub(crate) fn pose(description: &PoseDescription, key: &str) -> Result<PoseData, ViewError> {
-    let pose = description.pose().map_err(|reason| ViewError::Pose { key: key.into(), reason })?;
+    let pose = description.pose().map_err(|error| ViewError::Pose { key: key.into(), error })?;
     let (p, q) = (pose.translation.vector, pose.rotation.quaternion());
     // Not rounded: these few stand at the root of every chain.
     Ok([p.x, p.y, p.z, q.w, q.i, q.j, q.k])

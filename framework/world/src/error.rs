@@ -1,7 +1,7 @@
 //! Why a description of a hand, an object or a scene is refused.
 
 use crate::hand::HandError;
-use regrasp_api::{MeshError, MeshSourceError};
+use regrasp_api::{MeshError, MeshSourceError, PoseError, Refusal, Refuse};
 use thiserror::Error;
 
 /// Why a description is refused: each message names the key or the file, the value and what is allowed.
@@ -26,6 +26,14 @@ pub enum WorldError {
         /// Why, and what to do.
         reason: String,
     },
+    /// A pose that cannot be read.
+    #[error("`{key}`: {error}")]
+    Pose {
+        /// The path of the key.
+        key: String,
+        /// What is wrong with it.
+        error: PoseError,
+    },
     /// The hand; its keys are below `hand`.
     #[error("in `hand`: {0}")]
     Hand(#[from] HandError),
@@ -37,6 +45,20 @@ pub enum WorldError {
         /// What is wrong with the mesh, and the fix.
         source: MeshError,
     },
+}
+
+impl Refuse for WorldError {
+    fn refusal(&self) -> Refusal {
+        match self {
+            Self::Range { key, value, range } => {
+                Refusal::new("out-of-range", self).key(key).value(value).range(range)
+            }
+            Self::Value { key, .. } => Refusal::new("value", self).key(key),
+            Self::Pose { key, error } => error.refusal().told(self).below(key),
+            Self::Hand(error) => error.refusal().told(self).below("hand"),
+            Self::Mesh { key, .. } => Refusal::new("mesh", self).key(key),
+        }
+    }
 }
 
 impl WorldError {

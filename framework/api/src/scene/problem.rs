@@ -1,9 +1,10 @@
 //! A planning problem as plain data: what a scenario file says, and what a plan file repeats.
 
 use super::{HandDescription, Limits, ObjectDescription, ObstacleDescription};
-use crate::{Body, FingerIndex, Pose, Rotation, Vec3};
+use crate::{Body, FingerIndex, Pose, Refusal, Refuse, Rotation, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 /// A pose: a position, and an orientation as a quaternion or as axis and angle.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,31 +29,59 @@ pub struct PoseDescription {
     pub angle_deg: Option<f64>,
 }
 
+/// Why a pose cannot be read.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum PoseError {
+    /// A coordinate that is not finite (m).
+    #[error("`position` must be three finite numbers")]
+    Position([f64; 3]),
+    /// No quaternion.
+    #[error("`orientation` must be a quaternion w, x, y, z that is finite and not zero")]
+    Orientation([f64; 4]),
+    /// No axis, or no angle (degrees).
+    #[error("`axis` must be finite and not zero, `angle_deg` finite")]
+    Turn([f64; 3], f64),
+    /// The orientation is given twice, or by half.
+    #[error("give either `orientation`, or both `axis` and `angle_deg`")]
+    TwoWays,
+}
+
+impl Refuse for PoseError {
+    fn refusal(&self) -> Refusal {
+        let refusal = Refusal::new("pose", self);
+        match self {
+            Self::Position(position) => refusal.key("position").value(format!("{position:?}")),
+            Self::Orientation(quaternion) => refusal.key("orientation").value(format!("{quaternion:?}")),
+            Self::Turn(axis, angle) => refusal.key("axis").value(format!("{axis:?}, {angle} degrees")),
+            Self::TwoWays => refusal.remedy(self),
+        }
+    }
+}
+
 impl PoseDescription {
     /// The pose; `Err` says which key is wrong and why.
-    pub fn pose(&self) -> Result<Pose, String> {
+    pub fn pose(&self) -> Result<Pose, PoseError> {
         if !self.position.iter().all(|x| x.is_finite()) {
-            return Err("`position` must be three finite numbers".into());
+            return Err(PoseError::Position(self.position));
         }
         let rotation = match (self.orientation, self.axis, self.angle_deg) {
             (None, None, None) => Rotation::identity(),
             (Some([w, x, y, z]), None, None) => {
                 let q = nalgebra::Quaternion::new(w, x, y, z);
                 if !(q.norm().is_finite() && q.norm() > 1e-9) {
-                    return Err(
-                        "`orientation` must be a quaternion w, x, y, z that is finite and not zero".into()
-                    );
+                    return Err(PoseError::Orientation([w, x, y, z]));
                 }
                 Rotation::from_quaternion(q)
             }
             (None, Some(axis), Some(angle)) => {
-                let axis = Vec3::from(axis);
-                if !(axis.norm().is_finite() && axis.norm() > 1e-9 && angle.is_finite()) {
-                    return Err("`axis` must be finite and not zero, `angle_deg` finite".into());
+                let direction = Vec3::from(axis);
+                if !(direction.norm().is_finite() && direction.norm() > 1e-9 && angle.is_finite()) {
+                    return Err(PoseError::Turn(axis, angle));
                 }
-                Rotation::from_scaled_axis(axis.normalize() * angle.to_radians())
+                Rotation::from_scaled_axis(direction.normalize() * angle.to_radians())
             }
-            _ => return Err("give either `orientation`, or both `axis` and `angle_deg`".into()),
+            _ => return Err(PoseError::TwoWays),
         };
         Ok(Pose::from_parts(Vec3::from(self.position).into(), rotation))
     }
@@ -205,7 +234,7 @@ mod tests {
         let back = PoseDescription::from(&pose).pose().unwrap();
         assert!(crate::angle_between(&back.rotation, &pose.rotation) < 1e-12);
         let half = PoseDescription { axis: Some([0.0, 0.0, 1.0]), ..Default::default() };
-        assert!(half.pose().unwrap_err().contains("angle_deg"));
+        assert!(half.pose().unwrap_err().to_string().contains("angle_deg"));
         let zero = PoseDescription { orientation: Some([0.0; 4]), ..Default::default() };
         assert!(zero.pose().is_err());
         let nan = PoseDescription { position: [f64::NAN, 0.0, 0.0], ..Default::default() };

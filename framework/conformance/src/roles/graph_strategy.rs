@@ -82,7 +82,7 @@ fn sensible(subject: &Subject<'_>) -> Finding {
     for (key, weather) in [(1, FAIR), (2, BARREN), (3, FAIR)] {
         let mut graph = SquareGraph::new(weather, key);
         run(&*strategy, &mut graph, key, |graph, action| {
-            graph.clone().act(action).map_or_else(broken, |_| Ok(()))
+            graph.clone().act(action).map_or_else(|senseless| broken(senseless.to_string()), |_| Ok(()))
         })?;
     }
     Ok(())

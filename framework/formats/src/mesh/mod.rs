@@ -36,8 +36,9 @@ fn from_file(source: &MeshSource, path: &Path, key: &str) -> Result<Mesh, Format
 }
 
 /// Vertices and facets as a file has them, vertices at equal coordinates merged: for uses that need no closed surface, such as a hull.
-pub fn read_points(path: &Path) -> Result<Raw, String> {
-    read(path).map(weld::welded)
+pub fn read_points(path: &Path) -> Result<Raw, FormatError> {
+    let fail = |reason| FormatError::File { key: "mesh".into(), path: path.into(), reason };
+    read(path).map(weld::welded).map_err(fail)
 }
 
 fn read(path: &Path) -> Result<Raw, String> {

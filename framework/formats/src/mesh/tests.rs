@@ -362,7 +362,7 @@ fn what_is_wrong_with_collada_is_said() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.dae");
         std::fs::write(&path, text.replace(from, to)).unwrap();
-        read_points(&path).unwrap_err()
+        read_points(&path).unwrap_err().to_string()
     };
     let doubling = doubling()
         + "<library_visual_scenes><visual_scene id='scene'><node><instance_node url='#n0'/></node>";

@@ -1,5 +1,6 @@
 //! Why a library of plugins is refused.
 
+use regrasp_api::{Refusal, Refuse};
 use std::fmt;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -114,4 +115,24 @@ pub enum LoadError {
 
 fn lines(differences: &[Difference]) -> String {
     differences.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+}
+
+impl Refuse for LoadError {
+    fn refusal(&self) -> Refusal {
+        let (code, path) = match self {
+            Self::Unreadable { path, .. } => ("unreadable", path),
+            Self::NotALibrary { path, .. } => ("not-a-library", path),
+            Self::NoPlugins { path, .. } => ("no-plugins", path),
+            Self::Contract { path, .. } => ("library-contract", path),
+            Self::Fingerprint { path, .. } => ("library-fingerprint", path),
+            Self::Duplicate { id, .. } => return Refusal::new("duplicate-plugin", self).value(id),
+            Self::Open { path, .. } => ("library-open", path),
+            Self::Changed { path, .. } => ("library-changed", path),
+        };
+        let remedy = match self {
+            Self::Contract { rebuild, .. } | Self::Fingerprint { rebuild, .. } => rebuild.as_str(),
+            _ => "",
+        };
+        Refusal::new(code, self).file(path.display()).remedy(remedy)
+    }
 }

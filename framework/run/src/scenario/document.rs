@@ -1,7 +1,7 @@
 //! A TOML or JSON file as plain data that remembers its lines.
 
 use super::{Place, ScenarioError, json};
-use regrasp_api::{KeyPath, Step, check_schema};
+use regrasp_api::{KeyPath, Refusal, Refuse, Step, check_schema};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -60,7 +60,14 @@ impl Document {
 
     /// A refusal of the value at `path`.
     pub fn refuse(&self, path: &KeyPath, message: String) -> ScenarioError {
-        ScenarioError::Value { place: self.place(path), message }
+        self.refused(&Refusal::new("value", &message).key(path))
+    }
+
+    /// A refusal with the place of its key.
+    pub fn refused(&self, error: &impl Refuse) -> ScenarioError {
+        let refusal = error.refusal();
+        let place = self.place(&key_path(refusal.key.as_deref().unwrap_or_default()));
+        ScenarioError::Value { place, refusal: Box::new(refusal) }
     }
 
     fn place_at(&self, offset: Option<usize>) -> Box<Place> {

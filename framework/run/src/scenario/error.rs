@@ -1,6 +1,6 @@
 //! Why a scenario is refused: always with the file and, where there is one, the key, the line and the likely fix.
 
-use regrasp_api::{Fault, did_you_mean};
+use regrasp_api::{Fault, Refusal, Refuse, did_you_mean};
 use regrasp_host::HostError;
 use std::fmt;
 use thiserror::Error;
@@ -93,13 +93,13 @@ pub enum ScenarioError {
         /// The allowed range, with its unit.
         range: String,
     },
-    /// A value makes no sense; the text says why.
-    #[error("{message}\n{place}")]
+    /// A value makes no sense.
+    #[error("{}\n{place}", .refusal.message)]
     Value {
         /// Where.
         place: Box<Place>,
         /// What is wrong, and the likely fix.
-        message: String,
+        refusal: Box<Refusal>,
     },
     /// A plugin or its settings are refused.
     #[error("{error}\n{place}")]
@@ -113,4 +113,38 @@ pub enum ScenarioError {
 
 fn or_all(near: &[String], known: &[String]) -> String {
     if near.is_empty() { format!("built in are `{}`", known.join("`, `")) } else { did_you_mean(near) }
+}
+
+impl Refuse for ScenarioError {
+    fn refusal(&self) -> Refusal {
+        match self {
+            Self::Unknown { what, name, near, known } => {
+                let key = if *what == "hand" { "hand.builtin" } else { "scenario" };
+                Refusal::new("unknown-name", self)
+                    .key(key)
+                    .value(name)
+                    .range(known.join(", "))
+                    .remedy(did_you_mean(near))
+            }
+            Self::Unreadable { place, cause } => {
+                at(place, Refusal::new("unreadable", &format!("cannot read the file: {cause}")))
+            }
+            Self::Syntax { place, message, language } => {
+                at(place, Refusal::new("syntax", &format!("not valid {language}: {message}")))
+            }
+            Self::Form { place, fault } => at(place, fault.refusal()),
+            Self::Range { place, value, range } => {
+                let message = format!("{value} is outside {range}");
+                at(place, Refusal::new("out-of-range", &message).value(value).range(range))
+            }
+            Self::Value { place, refusal } => at(place, refusal.refusal()),
+            Self::Plugin { place, error } => at(place, error.refusal()),
+        }
+    }
+}
+
+/// A refusal with its place in the file; the file's own key is the whole path.
+fn at(place: &Place, refusal: Refusal) -> Refusal {
+    let refusal = refusal.file(&place.file).line(place.line);
+    if place.key.is_empty() { refusal } else { refusal.key(&place.key) }
 }

@@ -1,8 +1,8 @@
 //! The hand of a scenario: a built-in one, a hand file, or a URDF.
 
 use super::document::{Document, key_path};
-use super::{HANDS, HandChoice, Place, ScenarioError, find, read, refused, unknown};
-use regrasp_api::HandDescription;
+use super::{HANDS, HandChoice, Place, ScenarioError, find, read, unknown};
+use regrasp_api::{HandDescription, Refuse};
 use regrasp_formats::{RobotFileError, embed_hand};
 use regrasp_hands::{UrdfHand, UrdfOptions, UrdfReport, read_urdf};
 use regrasp_world::ChainHand;
@@ -68,8 +68,8 @@ pub(super) fn load(
 
 fn described(document: Document, folder: &Path) -> Result<LoadedHand, ScenarioError> {
     let mut description: HandDescription = document.read()?;
-    embed_hand(&mut description, folder).map_err(|error| refused(&document, &error))?;
-    let hand = ChainHand::new(description.clone()).map_err(|error| refused(&document, &error))?;
+    embed_hand(&mut description, folder).map_err(|error| document.refused(&error))?;
+    let hand = ChainHand::new(description.clone()).map_err(|error| document.refused(&error))?;
     Ok(LoadedHand { hand, description, remarks: Vec::new() })
 }
 
@@ -81,7 +81,7 @@ fn from_urdf(
 ) -> Result<LoadedHand, ScenarioError> {
     let UrdfHand { description, report } =
         read_urdf(path, &choice.urdf_options(folder)).map_err(|error| urdf_refused(scenario, error))?;
-    let hand = ChainHand::new(description.clone()).map_err(|error| refused(scenario, &error))?;
+    let hand = ChainHand::new(description.clone()).map_err(|error| scenario.refused(&error))?;
     Ok(LoadedHand { hand, description, remarks: remarks(path, &report) })
 }
 
@@ -101,16 +101,16 @@ fn remarks(path: &Path, report: &UrdfReport) -> Vec<String> {
 /// A URDF's fault with its own place; what concerns the file as a whole, with the scenario's key.
 fn urdf_refused(scenario: &Document, error: RobotFileError) -> ScenarioError {
     let file = error.file.display().to_string();
+    let refusal = error.refusal();
     let Some(line) = error.line else {
-        let named = error.message.split('`').nth(1).unwrap_or_default();
-        let key = if HandChoice::URDF_KEYS.contains(&named) { named } else { "urdf" };
         let message = format!("{} (reading {file})", error.message);
-        return scenario.refuse(&key_path(&format!("hand.{key}")), message);
+        let key = format!("hand.{}", error.key.unwrap_or("urdf"));
+        return scenario.refused(&refusal.told(&message).key(key));
     };
     let text = std::fs::read_to_string(&error.file).unwrap_or_default();
     let excerpt = text.lines().nth(line - 1).unwrap_or_default().trim_end().chars().take(120).collect();
     let place = Box::new(Place { file, key: String::new(), line: Some(line), excerpt });
-    ScenarioError::Value { place, message: error.message }
+    ScenarioError::Value { place, refusal: Box::new(refusal) }
 }
 
 impl HandChoice {

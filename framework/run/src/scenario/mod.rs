@@ -17,8 +17,8 @@ pub use library::*;
 
 pub use document::{Document, is_json, key_path};
 use regrasp_api::{
-    HandDescription, MeshSource, ObjectDescription, ObjectModel, ObjectShape, Problem, SettingsError, Slot,
-    Step, near,
+    HandDescription, MeshSource, ObjectDescription, ObjectModel, ObjectShape, Problem, Refuse, SettingsError,
+    Slot, Step, near,
 };
 use regrasp_formats::{embed_obstacles, load_mesh};
 use regrasp_host::{Choices, HostError, Registry};
@@ -58,9 +58,9 @@ impl Scenario {
         self.document.place(&key_path(key))
     }
 
-    /// The refusal of something that was found wrong later; where its message names a key, with the place of that.
-    pub fn refuse(&self, error: &impl ToString) -> ScenarioError {
-        refused(&self.document, error)
+    /// The refusal of something that was found wrong later, with the place of its key.
+    pub fn refuse(&self, error: &impl Refuse) -> ScenarioError {
+        self.document.refused(error)
     }
 }
 
@@ -102,10 +102,10 @@ pub fn from_text(
     let choices = choices(&document, &content.plugins, registry)?;
     let hand::LoadedHand { hand, description, remarks } = hand::load(&document, &content.hand, folder)?;
     let mut problem = problem(&content, description);
-    check_problem(&problem).map_err(|error| refused(&document, &error))?;
-    embed_obstacles(&mut problem.obstacle, folder).map_err(|error| refused(&document, &error))?;
+    check_problem(&problem).map_err(|error| document.refused(&error))?;
+    embed_obstacles(&mut problem.obstacle, folder).map_err(|error| document.refused(&error))?;
     let object = object(&document, &mut problem.object, folder)?;
-    check_units(&hand, &object, &content.object.shape).map_err(|error| refused(&document, &error))?;
+    check_units(&hand, &object, &content.object.shape).map_err(|error| document.refused(&error))?;
     Ok(Scenario {
         name: content.name.clone().unwrap_or_else(|| stem(file)),
         summary: content.summary,
@@ -127,11 +127,11 @@ fn object(
     folder: &Path,
 ) -> Result<ObjectModel, ScenarioError> {
     let ObjectShape::Mesh(source) = &mut description.shape else {
-        return load_object(description).map_err(|error| refused(document, &error));
+        return load_object(description).map_err(|error| document.refused(&error));
     };
-    let mesh = load_mesh(source, folder, "object.shape").map_err(|error| refused(document, &error))?;
+    let mesh = load_mesh(source, folder, "object.shape").map_err(|error| document.refused(&error))?;
     *source = MeshSource::of(&mesh);
-    object_of_mesh(description, mesh).map_err(|error| refused(document, &error))
+    object_of_mesh(description, mesh).map_err(|error| document.refused(&error))
 }
 
 fn stem(file: &str) -> String {
@@ -170,13 +170,6 @@ fn unknown(what: &'static str, name: &str, files: &'static [BuiltIn]) -> Scenari
     let known: Vec<String> = files.iter().map(|file| file.name.to_owned()).collect();
     let near = near(name, known.iter().map(String::as_str));
     ScenarioError::Unknown { what, name: name.to_owned(), near, known }
-}
-
-/// The refusal of something that names its key itself, in backquotes and before anything else: the house's form of messages.
-fn refused(document: &Document, error: &impl ToString) -> ScenarioError {
-    let message = error.to_string();
-    let key = message.split('`').nth(1).unwrap_or_default();
-    document.refuse(&key_path(key), message.clone())
 }
 
 fn problem(content: &ScenarioFile, hand: HandDescription) -> Problem {

@@ -1,5 +1,6 @@
 //! Why a study is refused, or cannot go on.
 
+use regrasp_api::{Refusal, Refuse};
 use regrasp_plan::WriteError;
 use regrasp_run::RunError;
 use std::{io, path::PathBuf};
@@ -111,4 +112,31 @@ pub enum StudyError {
         /// Why.
         source: io::Error,
     },
+}
+
+impl Refuse for StudyError {
+    fn refusal(&self) -> Refusal {
+        match self {
+            Self::Refused { error, .. } => error.refusal().told(self),
+            Self::Empty { .. } => Refusal::new("nothing-to-run", self),
+            Self::DoubleScenario { name } => Refusal::new("double-scenario", self).value(name),
+            Self::DoubleVariant { name } => Refusal::new("double-variant", self).value(name),
+            Self::TwoPlugins { variant, slot } => Refusal::new("two-plugins", self).key(slot).value(variant),
+            Self::OtherStudy { folder, difference, .. } => {
+                Refusal::new("other-study", self).file(folder.display()).value(difference)
+            }
+            Self::NotEmpty { folder, entry } => {
+                Refusal::new("not-empty", self).file(folder.display()).value(entry)
+            }
+            Self::NoStudy { folder, .. } => Refusal::new("no-study", self).file(folder.display()),
+            Self::Busy { folder } => Refusal::new("busy", self).file(folder.display()),
+            Self::Journal { path, line, .. } => Refusal::new("journal", self)
+                .file(path.display())
+                .line(Some(*line))
+                .remedy("delete the line, and its run will be made again"),
+            Self::Merge(_) => Refusal::new("merge", self),
+            Self::Write(error) => error.refusal(),
+            Self::Io { path, .. } => Refusal::new("io", self).file(path.display()),
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Study files: comparisons that are too long for a command line, or that are to be kept.
 
 use super::{Change, VariantDraft, factorial};
-use regrasp_api::Slot;
+use regrasp_api::{Refuse, Slot};
 use regrasp_host::{Registry, slot_by_name};
 use regrasp_run::scenario::{self, Document, PluginTable, PluginTables, Scenario, ScenarioError, key_path};
 use schemars::JsonSchema;
@@ -122,7 +122,6 @@ pub fn load_study(path: &Path, registry: &Registry) -> Result<StudyRequest, Scen
     let name = path.display().to_string();
     let document = Document::parse(&name, &scenario::read(path)?)?;
     let content: StudyFile = document.read()?;
-    check_numbers(&document, &content)?;
     let variants = variants(&document, &content, registry)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let base = changes(&content.plugins);
@@ -147,27 +146,6 @@ pub fn load_study(path: &Path, registry: &Registry) -> Result<StudyRequest, Scen
 pub fn study_schema() -> String {
     let schema = schemars::schema_for!(StudyFile).to_value();
     serde_json::to_string_pretty(&schema).expect("a JSON value is JSON")
-}
-
-fn check_numbers(document: &Document, content: &StudyFile) -> Result<(), ScenarioError> {
-    let refuse = |key: &str, value: String, range: String| {
-        let message = format!("`{key}` = {value} is outside {range}");
-        Err(document.refuse(&key_path(key), message))
-    };
-    if let Some(seeds) = content.seeds.filter(|seeds| !(1..=MOST_SEEDS).contains(seeds)) {
-        return refuse("seeds", seeds.to_string(), format!("1..={MOST_SEEDS}"));
-    }
-    let last = u64::MAX - MOST_SEEDS;
-    if let Some(first) = content.first_seed.filter(|first| *first > last) {
-        return refuse("first_seed", first.to_string(), format!("0..={last}"));
-    }
-    if let Some(limit) = content.time_limit.filter(|limit| !(0.001..=1e7).contains(limit)) {
-        return refuse("time_limit", limit.to_string(), "0.001..=10000000".into());
-    }
-    match content.max_nodes.filter(|nodes| !(1..=10_000_000).contains(nodes)) {
-        Some(nodes) => refuse("max_nodes", nodes.to_string(), "1..=10000000".into()),
-        None => Ok(()),
-    }
 }
 
 fn scenario_names(
@@ -223,7 +201,7 @@ fn factor(
     let key = format!("vary[{index}]");
     let slot = slot_by_name(&table.slot).map_err(|error| {
         let key = format!("{key}.slot");
-        document.refuse(&key_path(&key), format!("`{key}`: {error}"))
+        document.refused(&error.refusal().told(&format!("`{key}`: {error}")).key(key))
     })?;
     if table.levels.is_empty() {
         let message = format!("`{key}.levels` is empty; give it plugins, such as [{{ use = \"…\" }}]");
@@ -265,7 +243,8 @@ fn check_id(
 ) -> Result<(), ScenarioError> {
     let Some(id) = &change.id else { return Ok(()) };
     let key = format!("{key}.use");
-    let refuse =
-        |error: regrasp_host::HostError| document.refuse(&key_path(&key), format!("`{key}`: {error}"));
+    let refuse = |error: regrasp_host::HostError| {
+        document.refused(&error.refusal().told(&format!("`{key}`: {error}")).key(&key))
+    };
     registry.lookup(change.slot, id).map(drop).map_err(refuse)
 }

@@ -23,7 +23,7 @@ const LENGTHS: (f64, f64) = (1e-6, 1e3);
 impl Placed {
     /// Reads a shape at a pose; `key` is the path of both in their description.
     pub fn read(shape: &Shape, pose: &PoseDescription, key: &str) -> Result<Self, WorldError> {
-        let X_BS = pose.pose().map_err(|reason| WorldError::value(format!("{key}.pose"), reason))?;
+        let X_BS = pose.pose().map_err(|error| WorldError::Pose { key: format!("{key}.pose"), error })?;
         let solid = solid(shape, &format!("{key}.shape"))?;
         Ok(Self::new(solid, X_BS))
     }

@@ -213,7 +213,7 @@ fn check_shape(key: &str, shape: &Shape) -> Result<(), HandError> {
 }
 
 fn check_pose(key: String, pose: &PoseDescription) -> Result<Pose, HandError> {
-    pose.pose().map_err(|reason| HandError::Pose { key, reason })
+    pose.pose().map_err(|error| HandError::Pose { key, error })
 }
 
 fn check_name(name: &str, key: &str) -> Result<(), HandError> {

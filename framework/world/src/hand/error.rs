@@ -1,5 +1,6 @@
 //! Why a hand's description is refused.
 
+use regrasp_api::{PoseError, Refusal, Refuse};
 use thiserror::Error;
 
 /// Why a hand's description is refused; each message names the key, the value, the allowed range and the likely fix.
@@ -35,12 +36,12 @@ pub enum HandError {
         value: [f64; 3],
     },
     /// A pose that cannot be read.
-    #[error("`{key}`: {reason}")]
+    #[error("`{key}`: {error}")]
     Pose {
         /// Path of the key, such as `finger[1].base`.
         key: String,
         /// What is wrong with it.
-        reason: String,
+        error: PoseError,
     },
     /// Lower limit not below the upper one.
     #[error(
@@ -141,4 +142,37 @@ pub enum HandError {
         /// In how many independent directions its joints can move the tip.
         independent: usize,
     },
+}
+
+impl Refuse for HandError {
+    fn refusal(&self) -> Refusal {
+        let value = |key: &str| Refusal::new("value", self).key(key);
+        match self {
+            Self::Range { key, value, range, hint } => Refusal::new("out-of-range", self)
+                .key(key)
+                .value(value)
+                .range(range)
+                .remedy(hint.trim_start_matches("; ")),
+            Self::NoDirection { key, value: given } | Self::NotFinite { key, value: given } => {
+                value(key).value(format!("{given:?}"))
+            }
+            Self::Pose { key, error } => error.refusal().told(self).below(key),
+            Self::EmptyLimits { key, lower, upper } => {
+                value(&format!("{key}.lower")).value(lower).range(format!("..{upper}"))
+            }
+            Self::RestCount { key, given, wanted } => value(key).value(given).range(wanted),
+            Self::Count { key, given, range } => {
+                Refusal::new("out-of-range", self).key(key).value(given).range(range)
+            }
+            Self::EmptyName { key } => value(key).remedy("give it a name"),
+            Self::DuplicateName { key, name, .. }
+            | Self::Driver { key, name }
+            | Self::NoSuchBody { key, name } => value(key).value(name),
+            Self::DrivenTooFar { key, driver, driven, limits, .. } => value(&format!("{key}.mimic"))
+                .value(driven)
+                .range(format!("{}..={}", limits.0, limits.1))
+                .remedy(format!("narrow the limits of \"{driver}\"")),
+            Self::TooFewIndependentJoints { key, .. } => value(key).remedy("add a joint or change an axis"),
+        }
+    }
 }

@@ -129,7 +129,7 @@ pub fn check_units(hand: &ChainHand, object: &ObjectModel, shape: &ObjectShape) 
 /// The poses of the start and the goals, in turn; no goals, and consecutive ones that coincide, are refused.
 pub(super) fn poses(problem: &Problem) -> Result<Vec<Pose>, WorldError> {
     let read =
-        |pose: &PoseDescription, key: String| pose.pose().map_err(|reason| WorldError::value(key, reason));
+        |pose: &PoseDescription, key: String| pose.pose().map_err(|error| WorldError::Pose { key, error });
     let mut poses = vec![read(&problem.start.pose, "start.pose".into())?];
     if problem.goal.is_empty() {
         return Err(WorldError::value(

@@ -11,15 +11,18 @@ pub const PERIOD: u32 = 13;
 /// Who takes time: the plugin of a slot, or clearance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
-    ContactModel,
-    StabilityTest,
-    Surface,
-    Sampler,
-    GraspPlanner,
-    TransferPlanner,
-    RegraspPlanner,
-    GraphStrategy,
+    Slot(Slot),
     Clearance,
+}
+
+impl Source {
+    /// The place among [`names`].
+    fn number(self) -> usize {
+        match self {
+            Self::Slot(slot) => slot as usize,
+            Self::Clearance => Slot::ALL.len(),
+        }
+    }
 }
 
 /// The name of collision and distance among the sources of time.
@@ -27,7 +30,7 @@ pub const CLEARANCE: &str = "clearance";
 /// The name of all that is neither a plugin nor clearance.
 pub const FRAMEWORK: &str = "framework";
 
-/// The names of [`Source`] in the order of its variants; those of the slots come first, in their order.
+/// The names of the sources in the order of their numbers.
 fn names() -> impl Iterator<Item = &'static str> {
     Slot::ALL.into_iter().map(Slot::name).chain([CLEARANCE])
 }
@@ -74,14 +77,14 @@ impl<'a> Meter<'a> {
         let before_s = self.inner_s.value();
         self.inner_s.set(0.0);
         let (answer, took_s) = self.time(call);
-        self.self_s[source as usize].add(took_s - self.inner_s.value());
+        self.self_s[source.number()].add(took_s - self.inner_s.value());
         self.inner_s.set(before_s + took_s);
         answer
     }
 
     /// A call that leads to no calls of others.
     pub fn leaf<R>(&self, source: Source, call: impl FnOnce() -> R) -> R {
-        let count = &self.calls[source as usize];
+        let count = &self.calls[source.number()];
         let number = count.load(Ordering::Relaxed).wrapping_add(1);
         // The middle of each period is timed: the first calls of a run are not like the others.
         if number != PERIOD / 2 {
@@ -91,7 +94,7 @@ impl<'a> Meter<'a> {
         count.store(number, Ordering::Relaxed);
         let (answer, took_s) = self.time(call);
         let all_s = took_s * f64::from(PERIOD);
-        self.self_s[source as usize].add(all_s);
+        self.self_s[source.number()].add(all_s);
         self.inner_s.add(all_s);
         answer
     }
@@ -140,10 +143,10 @@ mod tests {
     fn names_follow_the_slots() {
         let names: Vec<&str> = names().collect();
         assert_eq!(names.len(), SOURCES);
-        assert_eq!(names[Source::StabilityTest as usize], "stability-test");
-        assert_eq!(names[Source::RegraspPlanner as usize], "local-planner.regrasp");
-        assert_eq!(names[Source::GraphStrategy as usize], "graph-strategy");
-        assert_eq!(names[Source::Clearance as usize], CLEARANCE);
+        assert_eq!(names[Source::Slot(Slot::StabilityTest).number()], "stability-test");
+        assert_eq!(names[Source::Slot(Slot::RegraspPlanner).number()], "local-planner.regrasp");
+        assert_eq!(names[Source::Slot(Slot::GraphStrategy).number()], "graph-strategy");
+        assert_eq!(names[Source::Clearance.number()], CLEARANCE);
     }
 
     #[test]
@@ -151,10 +154,10 @@ mod tests {
         let clock = Work::default();
         let meter = Meter::new(&clock, 0.0);
         let periods = 4 * PERIOD;
-        meter.outer(Source::Sampler, || {
+        meter.outer(Source::Slot(Slot::Sampler), || {
             clock.0.add(1.0);
-            meter.outer(Source::GraspPlanner, || clock.0.add(2.0));
-            (0..periods).for_each(|_| meter.leaf(Source::StabilityTest, || clock.0.add(0.5)));
+            meter.outer(Source::Slot(Slot::GraspPlanner), || clock.0.add(2.0));
+            (0..periods).for_each(|_| meter.leaf(Source::Slot(Slot::StabilityTest), || clock.0.add(0.5)));
             clock.0.add(3.0);
         });
         let leaves = f64::from(periods) * 0.5;
@@ -170,7 +173,7 @@ mod tests {
     fn times_never_exceed_planning() {
         let clock = Work::default();
         let meter = Meter::new(&clock, 0.0);
-        (0..PERIOD).for_each(|_| meter.leaf(Source::Surface, || clock.0.add(1.0)));
+        (0..PERIOD).for_each(|_| meter.leaf(Source::Slot(Slot::Surface), || clock.0.add(1.0)));
         let roles = meter.roles_s(1.0);
         assert!((roles.values().sum::<f64>() - 1.0).abs() < 1e-12 && roles["surface"] > 0.99);
     }
@@ -188,7 +191,7 @@ mod tests {
         let tick = tick_s(&clock);
         assert!((tick - 0.25).abs() < 1e-12);
         let meter = Meter::new(&clock, tick);
-        meter.outer(Source::Sampler, || clock.0.add(2.0));
+        meter.outer(Source::Slot(Slot::Sampler), || clock.0.add(2.0));
         assert!((meter.roles_s(3.0)["sampler"] - 2.0).abs() < 1e-12);
     }
 }

@@ -11,7 +11,8 @@ mod services;
 
 pub use meter::*;
 
-use regrasp_planner::{Drivers, Outcome, PlanError, Request};
+use regrasp_api::{Plugins, Slot, with_slots};
+use regrasp_planner::{Outcome, PlanError, Request};
 
 /// Something that is timed.
 pub(super) struct Timed<'a, T: ?Sized> {
@@ -36,32 +37,20 @@ impl<'a, T: ?Sized> Timed<'a, T> {
     }
 }
 
-/// Plans as `request` says, on one thread, and charges the meter with the time of each role and of clearance.
-pub(super) fn solve(request: &Request<'_>, meter: &Meter<'_>) -> Result<Outcome, PlanError> {
-    let drivers = &request.drivers;
-    let contact_model = Timed::new(request.contact_model, meter, Source::ContactModel);
-    let stability = Timed::new(request.stability, meter, Source::StabilityTest);
-    let surface = Timed::new(request.surface, meter, Source::Surface);
-    let clearance = Timed::new(request.clearance, meter, Source::Clearance);
-    let sampler = Timed::new(drivers.sampler, meter, Source::Sampler);
-    let grasp = Timed::new(drivers.grasp, meter, Source::GraspPlanner);
-    let transfer = Timed::new(drivers.transfer, meter, Source::TransferPlanner);
-    let regrasp = Timed::new(drivers.regrasp, meter, Source::RegraspPlanner);
-    let strategy = Timed::new(drivers.strategy, meter, Source::GraphStrategy);
-    regrasp_planner::solve(&Request {
-        contact_model: &contact_model,
-        stability: &stability,
-        surface: &surface,
-        clearance: &clearance,
-        drivers: Drivers {
-            sampler: &sampler,
-            grasp: &grasp,
-            transfer: &transfer,
-            regrasp: &regrasp,
-            strategy: &strategy,
-        },
-        // The meter follows the nesting of calls on one thread.
-        threads: 1,
-        ..*request
-    })
+macro_rules! solve {
+    ($([$slot:ident $field:ident $trait:ident] $row:tt)+) => {
+        /// Plans as `request` says, on one thread, and charges the meter with the time of each slot and of clearance.
+        pub(super) fn solve(request: &Request<'_>, meter: &Meter<'_>) -> Result<Outcome, PlanError> {
+            $(let $field = Timed::new(request.plugins.$field, meter, Source::Slot(Slot::$slot));)+
+            let clearance = Timed::new(request.clearance, meter, Source::Clearance);
+            regrasp_planner::solve(&Request {
+                plugins: Plugins { $($field: &$field),+ },
+                clearance: &clearance,
+                // The meter follows the nesting of calls on one thread.
+                threads: 1,
+                ..*request
+            })
+        }
+    };
 }
+with_slots!(solve);
