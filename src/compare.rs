@@ -1,6 +1,7 @@
 //! `regrasp compare`
 
 mod args;
+mod isolate;
 mod progress;
 mod surroundings;
 mod table;
@@ -29,7 +30,10 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     let registry = plugins::registry(&args.libraries)?;
     let (scenarios, draft) = request(args, &registry)?;
     let prepared = compare::prepare(draft, &scenarios, &registry).map_err(Failure::refused)?;
-    make(args, prepared)
+    match args.only {
+        Some(key) => isolate::make_one(args, &prepared, key),
+        None => make(args, prepared),
+    }
 }
 
 /// Makes what is missing of the study, writes its results, and reports.
@@ -38,7 +42,17 @@ fn make(args: &CompareArgs, mut prepared: compare::Prepared<'_>) -> Result<(), F
     hush_runs();
     let (watch, bar) = (Watch::start(None), Bar::new());
     let threads = threads(args);
-    let execution = Execution { threads, clock: &watch, cancel: &watch, progress: &bar };
+    let processes = isolate::Processes::new(&watch);
+    let execution = Execution {
+        threads,
+        clock: &watch,
+        cancel: &watch,
+        progress: &bar,
+        audit: args.audit,
+        keep_plans: args.keep_plans,
+        isolate: Some(&processes),
+        isolate_all: args.isolate,
+    };
     let complete = compare::execute(&prepared, &mut folder, &execution);
     bar.finish();
     let complete = complete.map_err(Failure::refused)?;

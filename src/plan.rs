@@ -51,6 +51,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
         say(&summary.text())?;
         if args.rejections && ran.outcome.status == Status::Solved {
             say(&report::rejections(&ran.outcome.statistics))?;
+            say(&report::notes(&ran.outcome.tally))?;
         }
     }
     view::show_run(args, &setup, &ran, saved.as_deref())?;

@@ -1,16 +1,17 @@
 //! What `plan` says about a run.
 
 use crate::table::Table;
-use crate::verify::check_table;
-use regrasp::api::{Reason, Slot};
+use crate::verify::{check_table, number};
+use regrasp::api::{Reason, Slot, Tally};
 use regrasp::host::Choices;
 use regrasp::page::place_text;
-use regrasp::plan::{Extreme, Plan, Statistics};
+use regrasp::plan::{Extreme, Plan, SegmentKind, Statistics};
 use regrasp::planner::Status;
 use regrasp::run::scenario::Scenario;
 use regrasp::run::{Run, RunOptions};
 use regrasp::verify::Check;
 use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// A run with everything that a report about it mentions.
@@ -159,7 +160,32 @@ impl Summary<'_> {
             Some(path) => format!("it was kept as `{}`", path.display()),
             None => "it was not written".into(),
         };
-        format!("the plan does not verify; {kept}\n{table}")
+        format!("the plan does not verify; {kept}\n{table}{}", self.culprits())
+    }
+
+    /// Whose segments fail, and how to hear more.
+    fn culprits(&self) -> String {
+        let checks = self.run.verdict.iter().flat_map(|verdict| verdict.failures());
+        let (mut slots, segments) = (BTreeSet::new(), &self.run.outcome.motion.segments);
+        for check in checks {
+            let Some(segment) = check.place.segment.and_then(|index| segments.get(index)) else { continue };
+            slots.insert(match segment.kind {
+                SegmentKind::Transfer => Slot::TransferPlanner,
+                SegmentKind::Regrasp(_) => Slot::RegraspPlanner,
+            });
+            if check.name == "stability" {
+                slots.extend([Slot::ContactModel, Slot::StabilityTest]);
+            }
+        }
+        let name = |slot: Slot| format!("`{}`", self.choices.choice(slot).id);
+        let names: Vec<String> = slots.into_iter().map(name).collect();
+        match names.as_slice() {
+            [] => String::new(),
+            names => format!(
+                "  what fails comes from {}; the same command with `--audit` names the call and the law it breaks\n",
+                names.join(" and ")
+            ),
+        }
     }
 
     /// Why there is no plan, what to try, and the rejections by cause.
@@ -204,6 +230,21 @@ pub fn rejections(statistics: &Statistics) -> String {
         let count = |reason: &Reason| plugin.rejections.get(reason).map(u64::to_string).unwrap_or("-".into());
         let cells = [slot.name().to_owned(), plugin.calls.to_string()].into_iter();
         table.row(cells.chain(reasons.iter().map(count)));
+    }
+    table.text()
+}
+
+/// What plugins noted under names of their own; empty where none did.
+pub fn notes(tally: &Tally) -> String {
+    if tally.notes().is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new("<<>", &["noted by", "name", "times", "mean", "least", "most"]);
+    for note in tally.notes() {
+        let figure = note.figure;
+        let numbers = [figure.mean, figure.least, figure.most].map(number);
+        let cells = [note.slot.name().to_owned(), note.name.to_owned(), figure.count.to_string()];
+        table.row(cells.into_iter().chain(numbers));
     }
     table.text()
 }

@@ -40,7 +40,7 @@ pub fn check_table<'a>(checks: impl Iterator<Item = &'a Check>, problem: &Proble
     table.text()
 }
 
-fn number(x: f64) -> String {
+pub fn number(x: f64) -> String {
     let size = x.abs();
     if x == 0.0 || (1e-3..1e5).contains(&size) { format!("{x:.4}") } else { format!("{x:.2e}") }
 }

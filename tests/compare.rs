@@ -45,7 +45,16 @@ fn a_panic_of_the_framework_is_a_row_and_the_study_goes_on() {
     let place = tempfile::tempdir().expect("a temporary folder");
     let mut folder = Folder::open(place.path(), &mut prepared.study).expect("the folder is new");
     let clock = Faulty(AtomicUsize::new(0));
-    let with = Execution { threads: 1, clock: &clock, cancel: &Uninterrupted, progress: &Silent };
+    let with = Execution {
+        threads: 1,
+        clock: &clock,
+        cancel: &Uninterrupted,
+        progress: &Silent,
+        audit: false,
+        keep_plans: false,
+        isolate: None,
+        isolate_all: false,
+    };
     assert!(execute(&prepared, &mut folder, &with).expect("the folder can be written to"));
     folder.finish(&prepared.study).expect("the folder can be written to");
     let records = folder.records();

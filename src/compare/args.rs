@@ -3,7 +3,7 @@
 use crate::args::LibraryArgs;
 use crate::numbers::{seconds, whole};
 use clap::Args;
-use regrasp::study::compare::{MOST_SEEDS, Shard, Suite};
+use regrasp::study::compare::{MOST_SEEDS, RunKey, Shard, Suite};
 use std::path::PathBuf;
 
 /// Compare combinations of plugins: every scenario, planned by every variant with every seed, every plan verified.
@@ -12,7 +12,8 @@ use std::path::PathBuf;
 `regrasp scenarios` lists the built-in scenarios, `regrasp plugins` the slots, their plugins and settings.\n\n\
 Each `--vary` names plugins of one slot, or values of one setting; all combinations are compared, and the one of the first names is the \
 baseline. Runs are made in parallel, each on one thread. Ctrl-C, or even a kill, keeps what is finished: the same command goes on from there \
-and makes no run again. A run that fails, panics or takes too long is a row of the study, not its end.\n\n\
+and makes no run again. A run that fails, panics or takes too long is a row of the study, not its end; so is one that ends its process, the \
+next time the same command is given, or at once with `--isolate`.\n\n\
 DIR gets `runs.csv` (a row a run), `summary.csv` and `summary.md` (figures over the seeds and what may be said of them), `report.html`, \
 `ompl/` (logs for OMPL's tools and Planner Arena), `study.json` (all that is needed to repeat it), `runs.jsonl` (the runs in full) and \
 `plans/` (for each scenario the baseline's plan with the first seed).\n\n\
@@ -31,7 +32,7 @@ pub struct CompareArgs {
     /// Take scenarios and variants from a study file.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scenarios", "suite", "vary"])]
     pub study: Option<PathBuf>,
-    /// Compare these plugins in a slot, or these values of a setting; can be repeated.
+    /// Compare these plugins in a slot, `ID` or `ID{KEY=VALUE,…}`, or these values of a setting; can be repeated.
     #[arg(long, value_name = "SLOT[.KEY]=A,B…")]
     pub vary: Vec<String>,
     /// Plan each problem with this many seeds [default: 20].
@@ -57,6 +58,19 @@ pub struct CompareArgs {
     /// Make this many runs at once, 1 to 1024, each on one thread [default: one for each core].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16, 1, 1024>)]
     pub threads: Option<u16>,
+    /// Make every run in a process of its own, so that one that ends its process is a row like any other.
+    #[arg(long)]
+    pub isolate: bool,
+    /// Hold every call of a plugin against the laws of its role; a run in which one is broken is a failed row. Runs take about three times as
+    /// long, so their times say nothing.
+    #[arg(long)]
+    pub audit: bool,
+    /// Keep the plan of every run in `plans/SCENARIO/`.
+    #[arg(long)]
+    pub keep_plans: bool,
+    /// Make this run alone and print it: what `--isolate` starts.
+    #[arg(long, hide = true, value_name = "SCENARIO/VARIANT/SEED", value_parser = only)]
+    pub only: Option<RunKey>,
     /// Leave out scenarios that a variant's plugins do not support, instead of refusing the study.
     #[arg(long)]
     pub skip_unsupported: bool,
@@ -95,6 +109,7 @@ impl CompareArgs {
         self.libraries.load.iter().for_each(|path| option("load", Some(path.display().to_string())));
         option("time-limit", self.time_limit.map(|limit| limit.to_string()));
         option("max-nodes", self.max_nodes.map(|nodes| nodes.to_string()));
+        words.extend(self.audit.then(|| "--audit".to_owned()));
         words.extend(self.skip_unsupported.then(|| "--skip-unsupported".to_owned()));
         words
     }
@@ -103,6 +118,16 @@ impl CompareArgs {
 fn suite(text: &str) -> Result<Suite, String> {
     let named = |suite: &Suite| suite.name() == text;
     Suite::ALL.into_iter().find(named).ok_or_else(|| "it must be `paper` or `all`".to_owned())
+}
+
+fn only(text: &str) -> Result<RunKey, String> {
+    let numbers: Option<Vec<u64>> = text.split('/').map(|part| part.parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[scenario, variant, seed]) => {
+            Ok(RunKey { scenario: scenario as usize, variant: variant as usize, seed })
+        }
+        _ => Err("it must be SCENARIO/VARIANT/SEED, three numbers".into()),
+    }
 }
 
 fn shard(text: &str) -> Result<Shard, String> {

@@ -7,11 +7,11 @@ use regrasp::host::{Registry, slot_by_name};
 use regrasp::study::compare::Change;
 use serde_json::{Map, Value};
 
-/// The levels of `SLOT=ID,ID…` or `SLOT.KEY=VALUE,VALUE…`.
+/// The levels of `SLOT=ID,ID…`, of `SLOT=ID{KEY=VALUE,…},…`, or of `SLOT.KEY=VALUE,VALUE…`.
 pub fn factor(text: &str, registry: &Registry) -> Result<Vec<Change>, Failure> {
     let form = || {
         Failure::bad_input(format!(
-            "`--vary {text}` is not of the form SLOT=ID,ID… or SLOT.KEY=VALUE,VALUE…, such as sampler=rlg,projection"
+            "`--vary {text}` is not of the form SLOT=ID,ID…, SLOT=ID{{KEY=VALUE}},… or SLOT.KEY=VALUE,VALUE…, such as sampler=rlg,projection"
         ))
     };
     let (path, list) = text.split_once('=').ok_or_else(form)?;
@@ -22,14 +22,42 @@ pub fn factor(text: &str, registry: &Registry) -> Result<Vec<Change>, Failure> {
         return Ok(values.into_iter().map(|value| set(slot, key, value)).collect());
     }
     let slot = slot_by_name(path).map_err(|error| refuse("vary", text, &error))?;
-    if list.split(',').any(|id| id.trim().is_empty()) {
-        return Err(form());
-    }
-    let plugin = |id: &str| {
+    let plugin = |level: &str| {
+        let (id, settings) = split_settings(level.trim()).ok_or_else(form)?;
         registry.lookup(slot, id).map_err(|error| refuse("vary", text, &error))?;
-        Ok(Change { slot, id: Some(id.to_owned()), settings: Map::new() })
+        let settings = settings.map(|list| table(list).map_err(|reason| wrong(text, &reason)));
+        Ok(Change { slot, id: Some(id.to_owned()), settings: settings.transpose()?.unwrap_or_default() })
     };
-    list.split(',').map(str::trim).map(plugin).collect()
+    levels(list).into_iter().map(plugin).collect()
+}
+
+/// The parts of a list between the commas that stand outside of braces and brackets.
+fn levels(list: &str) -> Vec<&str> {
+    let mut depth = 0_i32;
+    let outside = |c: char| {
+        depth += i32::from(matches!(c, '{' | '[')) - i32::from(matches!(c, '}' | ']'));
+        c == ',' && depth == 0
+    };
+    list.split(outside).collect()
+}
+
+/// `ID` or `ID{SETTINGS}`; `None` where it is neither.
+fn split_settings(level: &str) -> Option<(&str, Option<&str>)> {
+    let (id, settings) = match level.split_once('{') {
+        Some((id, rest)) => (id, Some(rest.strip_suffix('}')?)),
+        None => (level, None),
+    };
+    (!id.is_empty() && !id.contains('}')).then_some((id, settings))
+}
+
+/// `KEY=VALUE,…` as settings; a value is TOML or a word.
+fn table(list: &str) -> Result<Map<String, Value>, String> {
+    let entry = |entry: &str| {
+        let (key, value) = entry.split_once('=').ok_or_else(|| format!("`{entry}` is not KEY=VALUE"))?;
+        let [value] = values(value)?.try_into().map_err(|_| format!("`{entry}` has no single value"))?;
+        Ok((key.trim().to_owned(), value))
+    };
+    levels(list).into_iter().map(entry).collect()
 }
 
 fn wrong(text: &str, reason: &str) -> Failure {
@@ -70,6 +98,18 @@ mod tests {
         let settings = factor("graph-strategy.end=0.3,0.8", &registry()).unwrap();
         assert_eq!(settings[1].settings, *json!({"end": 0.8}).as_object().unwrap());
         assert_eq!(settings[1].label(), "end=0.8");
+    }
+
+    #[test]
+    fn a_variant_may_bring_settings_of_its_own() {
+        let text = "graph-strategy=interleaved{start=0.2,end=1.0},lazy,interleaved{growth=2.0}";
+        let levels = factor(text, &registry()).unwrap();
+        assert_eq!(levels[0].settings, *json!({"start": 0.2, "end": 1.0}).as_object().unwrap());
+        assert!(levels[1].settings.is_empty());
+        assert_eq!(levels[2].label(), "interleaved growth=2.0");
+        for bad in ["graph-strategy=lazy{", "graph-strategy={a=1}", "graph-strategy=lazy{a}"] {
+            assert!(factor(bad, &registry()).is_err(), "{bad}");
+        }
     }
 
     #[test]

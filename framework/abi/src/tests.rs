@@ -135,7 +135,7 @@ fn every_function_of_an_entry_is_guarded() {
         0.1,
         0.8,
     );
-    let parts = Parts { object: &object, hand: &NoHand };
+    let parts = Parts::new(&object, &NoHand);
     let error = build("{}", &parts).err().unwrap();
     assert!(error.to_string().contains("`contact-model/broken` panicked: no build"), "{error}");
     let model = build("", &parts).unwrap();

@@ -1,6 +1,6 @@
 //! What a call is handed besides the task: its random stream, its budget, and a recorder of what happened.
 
-use crate::{CallError, Random, Reason, Slot, pending_fault};
+use crate::{CallError, Figure, Random, Reason, Slot, pending_fault};
 
 /// Whether the run should stop now: a deadline, Ctrl-C. The command line implements it; libraries own no clock.
 pub trait Interrupt: Sync {
@@ -18,14 +18,26 @@ impl Interrupt for Uninterrupted {
     }
 }
 
-/// Counts of calls and of rejections by cause, for each slot.
+/// Counts of calls and of rejections by cause, for each slot, and the figures that plugins noted.
 ///
 /// A plugin counts its own calls, first thing ([`Context::count_call`] with its slot), so that every caller is counted and none
 /// twice. What is handed no context counts nothing: contact models, and all of a surface but `geodesic`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
     calls: [u64; Slot::ALL.len()],
     rejections: [[u64; Reason::ALL.len()]; Slot::ALL.len()],
+    notes: Vec<Note>,
+}
+
+/// What the plugin in a slot noted under a name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Note {
+    /// The slot.
+    pub slot: Slot,
+    /// The name, the plugin's own.
+    pub name: &'static str,
+    /// The values.
+    pub figure: Figure,
 }
 
 impl Tally {
@@ -39,13 +51,26 @@ impl Tally {
         self.rejections[slot as usize][reason as usize]
     }
 
-    /// What was counted since `earlier`, a copy of these counts.
+    /// What plugins noted, in the order in which the names came up.
+    pub fn notes(&self) -> &[Note] {
+        &self.notes
+    }
+
+    fn note(&mut self, slot: Slot, name: &'static str, figure: Figure) {
+        match self.notes.iter_mut().find(|note| (note.slot, note.name) == (slot, name)) {
+            Some(note) => note.figure = note.figure.and(figure),
+            None => self.notes.push(Note { slot, name, figure }),
+        }
+    }
+
+    /// What was counted since `earlier`, a copy of these counts; of notes it says nothing.
     #[must_use]
     pub fn since(&self, earlier: &Self) -> Self {
         let mut since = self.clone();
         since.calls.iter_mut().zip(earlier.calls).for_each(|(now, then)| *now -= then);
         let then = earlier.rejections.iter().flatten();
         since.rejections.iter_mut().flatten().zip(then).for_each(|(now, then)| *now -= then);
+        since.notes.clear();
         since
     }
 
@@ -54,6 +79,7 @@ impl Tally {
         self.calls.iter_mut().zip(other.calls).for_each(|(a, b)| *a += b);
         let theirs = other.rejections.iter().flatten();
         self.rejections.iter_mut().flatten().zip(theirs).for_each(|(a, b)| *a += b);
+        other.notes.iter().for_each(|note| self.note(note.slot, note.name, note.figure));
     }
 }
 
@@ -104,6 +130,22 @@ impl<'a> Context<'a> {
         self.tally.rejections[slot as usize][reason as usize] += 1;
         reason
     }
+
+    /// Counts one "no" of the plugin in `slot` for a cause that only the plugin knows: as [`Reason::Other`], and under the plugin's own word.
+    pub fn reject_for(&mut self, slot: Slot, word: &'static str) -> Reason {
+        self.note(slot, word, 1.0);
+        self.reject(slot, Reason::Other)
+    }
+
+    /// Notes a figure of the plugin in `slot` under a name of its own, such as `edge_distance_m`: its count, mean, least and largest value
+    /// stand in the plan file and in a study's tables. A value that is not finite is left out.
+    ///
+    /// A counter notes 1. Results that are thrown away take their notes with them, so that figures do not depend on the threads.
+    pub fn note(&mut self, slot: Slot, name: &'static str, value: f64) {
+        if value.is_finite() {
+            self.tally.note(slot, name, Figure::one(value));
+        }
+    }
 }
 
 #[cfg(test)]
@@ -128,6 +170,19 @@ mod tests {
         assert_eq!(sum.rejections(Slot::Sampler, Reason::Slip), 0);
         assert_eq!((sum.calls(Slot::Sampler), sum.calls(Slot::Surface)), (2, 0));
         assert_eq!(sum.since(&context.tally), context.tally);
+    }
+
+    #[test]
+    fn notes_are_kept_by_slot_and_name() {
+        let mut context = Context::seeded(0);
+        context.note(Slot::Sampler, "tries", 3.0);
+        context.note(Slot::Sampler, "tries", f64::NAN);
+        assert_eq!(context.reject_for(Slot::Sampler, "slippery"), Reason::Other);
+        let mut sum = context.tally.clone();
+        sum.add(&context.tally);
+        let found: Vec<_> = sum.notes().iter().map(|note| (note.name, note.figure.count)).collect();
+        assert_eq!(found, [("tries", 2), ("slippery", 2)]);
+        assert_eq!(sum.rejections(Slot::Sampler, Reason::Other), 2);
     }
 
     #[test]

@@ -1,18 +1,6 @@
-//! How plugins present themselves: entries, and what they are built from.
+//! How plugins present themselves: entries.
 
-use crate::{Build, BuildError, Hand, ObjectModel, Settings, SettingsError, Slot};
-
-/// What a plugin may prepare itself for when it is built.
-#[derive(Clone, Copy)]
-pub struct Parts<'a> {
-    /// The object.
-    pub object: &'a ObjectModel,
-    /// The hand.
-    pub hand: &'a dyn Hand,
-}
-
-/// A plugin object, or why it cannot be built.
-pub type Built<T> = Result<Box<T>, BuildError>;
+use crate::{Build, Settings, SettingsError, Slot};
 
 /// A plugin's entry in the registry.
 #[derive(Clone, Copy)]

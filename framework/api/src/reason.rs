@@ -31,11 +31,13 @@ pub enum Reason {
     Stray,
     /// The call's own budget of tries is used up.
     Budget,
+    /// A cause of the plugin's own, which it counts under a word of its own ([`crate::Context::reject_for`]).
+    Other,
 }
 
 impl Reason {
     /// Every reason, in the order of their numbers.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Reach,
         Self::Limits,
         Self::Collision,
@@ -48,6 +50,7 @@ impl Reason {
         Self::Slip,
         Self::Stray,
         Self::Budget,
+        Self::Other,
     ];
 
     /// The name used in files and tables, in kebab case.
@@ -65,6 +68,7 @@ impl Reason {
             Self::Slip => "slip",
             Self::Stray => "stray",
             Self::Budget => "budget",
+            Self::Other => "other",
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The laws of every entry, whatever its role: how it presents itself and its settings.
 
 use crate::law::{Law, Subject};
+use crate::leaves::{Leaf, leaves, nested, tables};
 use crate::report::{Fault, Finding, broken, ensure};
 use regrasp_api::{Build, BuildError, Departure, Entry, Fault as Refusal, Parts, SettingsError};
 use serde_json::{Map, Value, json};
@@ -92,40 +93,48 @@ fn unknown_key(subject: &Subject<'_>) -> Finding {
     for text in [r#"{"no_such_key": 1}"#, "{", "7"] {
         ensure((subject.entry.check)(text).is_err(), || format!("accepts {text}"))?;
     }
+    // A table within the settings is as strict as they are.
+    for path in tables(&parsed_schema(subject)?) {
+        let text = nested(&path, json!({ "no_such_key": 1 })).to_string();
+        ensure((subject.entry.check)(&text).is_err(), || {
+            format!("accepts {text}: the inner struct lacks `#[serde(deny_unknown_fields)]`")
+        })?;
+    }
     Ok(())
 }
 
 fn ranges(subject: &Subject<'_>) -> Finding {
-    let schema = parsed_schema(subject)?;
-    for (key, property) in properties(&schema) {
-        let Some(number) = Number::of(&property) else { continue };
-        for value in number.absurd() {
-            let Err(error) = with(subject, &key, &value) else {
-                return broken(format!("accepts `{key}` = {value}"));
+    for leaf in leaves(&parsed_schema(subject)?) {
+        for value in absurd(&leaf) {
+            let Err(error) = with(subject, &leaf, &value) else {
+                return broken(format!("accepts `{}` = {value}", leaf.name()));
             };
-            edges(subject, &key, number, &error)?;
+            edges(subject, &leaf, &error)?;
         }
     }
     Ok(())
 }
 
 /// The range that a refusal states is the one that is kept: its ends are accepted, what lies beyond is not.
-fn edges(subject: &Subject<'_>, key: &str, number: Number, error: &SettingsError) -> Finding {
+fn edges(subject: &Subject<'_>, leaf: &Leaf, error: &SettingsError) -> Finding {
     let SettingsError::Departs(Departure { path, fault: Refusal::Range { range, .. } }) = error else {
         return Ok(());
     };
-    ensure(path.to_string() == key, || format!("`{key}` is refused with a message about `{path}`"))?;
+    let name = leaf.name();
+    // An item of a list is named by its list and its place.
+    let own = |path: &str| path == name || path.starts_with(&format!("{name}["));
+    ensure(own(&path.to_string()), || format!("`{name}` is refused with a message about `{path}`"))?;
     let (Some(low), Some(high)) = (range.low, range.high) else { return Ok(()) };
     for edge in [low, high] {
-        let refused = with(subject, key, &number.value(edge));
+        let refused = with(subject, leaf, &number(leaf, edge));
         // Another setting's default may rule out this end; that is another message.
-        let own =
-            matches!(&refused, Err(SettingsError::Departs(departure)) if departure.path.to_string() == key);
-        ensure(!own, || format!("refuses `{key}` = {edge}, though the range is {range}"))?;
+        let here =
+            matches!(&refused, Err(SettingsError::Departs(departure)) if own(&departure.path.to_string()));
+        ensure(!here, || format!("refuses `{name}` = {edge}, though the range is {range}"))?;
     }
-    for beyond in number.beyond(low, high) {
-        let accepted = with(subject, key, &beyond).is_ok();
-        ensure(!accepted, || format!("accepts `{key}` = {beyond}, though the range is {range}"))?;
+    for beyond in beyond(leaf, low, high) {
+        let accepted = with(subject, leaf, &beyond).is_ok();
+        ensure(!accepted, || format!("accepts `{name}` = {beyond}, though the range is {range}"))?;
     }
     Ok(())
 }
@@ -133,9 +142,8 @@ fn edges(subject: &Subject<'_>, key: &str, number: Number, error: &SettingsError
 fn build_agrees(subject: &Subject<'_>) -> Finding {
     let schema = parsed_schema(subject)?;
     let mut probes = vec![String::new(), r#"{"no_such_key": 1}"#.into(), "{".into()];
-    for (key, property) in properties(&schema) {
-        let values = Number::of(&property).map(Number::absurd).unwrap_or_default();
-        probes.extend(values.iter().map(|value| json!({ key.as_str(): value }).to_string()));
+    for leaf in leaves(&schema) {
+        probes.extend(absurd(&leaf).into_iter().map(|value| leaf.with(value).to_string()));
     }
     let bench = crate::fixtures::Bench::free_sphere();
     for text in probes {
@@ -150,43 +158,25 @@ fn build_agrees(subject: &Subject<'_>) -> Finding {
     Ok(())
 }
 
-/// A setting that is a number.
-#[derive(Clone, Copy)]
-enum Number {
-    Real,
-    Integer,
+/// Values that no setting can mean; `null` is how JSON writes NaN, but for a setting that may be absent.
+fn absurd(leaf: &Leaf) -> Vec<Value> {
+    let null = (!leaf.optional).then_some(Value::Null);
+    let numbers = match leaf.integer {
+        true => [json!(-1), json!(1_000_000_000_000_000_u64)],
+        false => [json!(-1e300), json!(1e300)],
+    };
+    numbers.into_iter().chain(null).collect()
 }
 
-impl Number {
-    fn of(property: &Value) -> Option<Self> {
-        match property["type"].as_str()? {
-            "number" => Some(Self::Real),
-            "integer" => Some(Self::Integer),
-            _ => None,
-        }
-    }
+fn number(leaf: &Leaf, x: f64) -> Value {
+    if leaf.integer { json!(x as i64) } else { json!(x) }
+}
 
-    /// Values that no setting can mean; `null` is how JSON writes NaN.
-    fn absurd(self) -> Vec<Value> {
-        match self {
-            Self::Real => vec![json!(-1e300), json!(1e300), Value::Null],
-            Self::Integer => vec![json!(-1), json!(1_000_000_000_000_000_u64), Value::Null],
-        }
-    }
-
-    fn value(self, x: f64) -> Value {
-        match self {
-            Self::Real => json!(x),
-            Self::Integer => json!(x as i64),
-        }
-    }
-
-    /// Values just outside `low..=high`.
-    fn beyond(self, low: f64, high: f64) -> [Value; 2] {
-        match self {
-            Self::Real => [json!(low.next_down()), json!(high.next_up())],
-            Self::Integer => [json!(low as i64 - 1), json!(high as i64 + 1)],
-        }
+/// Values just outside `low..=high`.
+fn beyond(leaf: &Leaf, low: f64, high: f64) -> [Value; 2] {
+    match leaf.integer {
+        true => [json!(low as i64 - 1), json!(high as i64 + 1)],
+        false => [json!(low.next_down()), json!(high.next_up())],
     }
 }
 
@@ -201,8 +191,8 @@ fn properties(schema: &Value) -> Vec<(String, Value)> {
 }
 
 /// What the plugin's check says of one value, the other settings being the defaults.
-fn with(subject: &Subject<'_>, key: &str, value: &Value) -> Result<(), SettingsError> {
-    (subject.entry.check)(&json!({ key: value }).to_string())
+fn with(subject: &Subject<'_>, leaf: &Leaf, value: &Value) -> Result<(), SettingsError> {
+    (subject.entry.check)(&leaf.with(value.clone()).to_string())
 }
 
 macro_rules! try_build {

@@ -16,6 +16,7 @@
 mod entry;
 pub mod fixtures;
 mod law;
+mod leaves;
 pub mod reference;
 mod report;
 mod roles;

@@ -17,7 +17,12 @@ enum Lie {
     WiderThanCoulomb,
     TwoAreEnough,
     SpinsOnForEver,
+    ForgetsToSpin,
+    Millimetres,
+    FollowsTheTangents,
+    GoesByFacet,
     Counts,
+    RemembersTheFirst,
     OtherOnOtherThreads,
     Prints,
 }
@@ -33,7 +38,7 @@ fn build(lie: Lie) -> Box<dyn ContactModel> {
 }
 
 impl ContactModel for Liar {
-    fn cone(&self, _: FingerIndex, _contact: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
         let round = Cone::Elliptic { mu, gamma: 0.0 };
         match self.lie {
             Lie::NoEdges if mu == 0.0 => Cone::Polyhedral(Vec::new().into()),
@@ -44,6 +49,24 @@ impl ContactModel for Liar {
             }
             Lie::OtherOnOtherThreads if std::thread::current().id() != self.home => {
                 Cone::Elliptic { mu: 0.5 * mu, gamma: 0.0 }
+            }
+            Lie::Millimetres => Cone::Elliptic { mu, gamma: 2.0 },
+            // A grain that is given along the tangents, which are no fact about the object.
+            Lie::FollowsTheTangents => {
+                let edge = |x: f64, y: f64| ConeEdge { tangential: [x * mu, y * mu], torsion: 0.0 };
+                Cone::Polyhedral(
+                    vec![edge(1.0, 0.0), edge(-1.0, 0.0), edge(0.0, 0.5), edge(0.0, -0.5)].into(),
+                )
+            }
+            Lie::GoesByFacet if contact.facet.is_multiple_of(2) => {
+                Cone::Elliptic { mu: 0.9 * mu, gamma: 0.0 }
+            }
+            Lie::RemembersTheFirst => {
+                let bits = contact.n_O.x.to_bits() | 1;
+                let first = self.calls.compare_exchange(0, bits, Ordering::Relaxed, Ordering::Relaxed);
+                let part =
+                    if first.unwrap_or_else(|first| first) == bits || first.is_ok() { 1.0 } else { 0.99 };
+                Cone::Elliptic { mu: part * mu, gamma: 0.0 }
             }
             Lie::Prints => {
                 println!("the friction is {mu}");
@@ -56,12 +79,13 @@ impl ContactModel for Liar {
     fn spinning_cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
         match self.lie {
             Lie::SpinsOnForEver => Cone::Elliptic { mu, gamma: 1e-3 },
+            Lie::ForgetsToSpin => Cone::FRICTIONLESS,
             _ => self.cone(finger, contact, mu),
         }
     }
 
     fn fewest_contacts(&self) -> usize {
-        if self.lie == Lie::TwoAreEnough { 2 } else { 3 }
+        if matches!(self.lie, Lie::TwoAreEnough | Lie::Millimetres) { 2 } else { 3 }
     }
 }
 
@@ -98,6 +122,11 @@ fn each_liar_fails_its_check_and_no_other() {
         (liar!(Lie::WiderThanCoulomb), "cone-within-friction"),
         (liar!(Lie::TwoAreEnough), "fewest-contacts"),
         (liar!(Lie::SpinsOnForEver), "spinning-cone"),
+        (liar!(Lie::ForgetsToSpin), "spinning-cone"),
+        (liar!(Lie::Millimetres), "torsion-bounded"),
+        (liar!(Lie::FollowsTheTangents), "tangent-frames"),
+        (liar!(Lie::GoesByFacet), "facet-numbers"),
+        (liar!(Lie::RemembersTheFirst), "contact-model-pure"),
         (liar!(Lie::Counts), "contact-model-pure"),
         (liar!(Lie::OtherOnOtherThreads), "contact-model-pure"),
     ];
@@ -177,6 +206,59 @@ struct Lenient {}
 
 impl Settings for Lenient {}
 
+/// Settings within settings, of which the inner ones are lenient, or keep no range.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct Outer<T> {
+    /// What is inside.
+    inner: T,
+}
+
+/// Inner settings that ignore what they do not know.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default)]
+struct LenientInside {
+    /// A flag.
+    on: bool,
+}
+
+impl Settings for Outer<LenientInside> {}
+
+/// Settings whose optional number and whose list are not looked at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct Unlooked {
+    /// A share, or none.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
+    share: Option<f64>,
+    /// Two lengths (m), 0..=1 as only this line says.
+    lengths: [f64; 2],
+}
+
+impl Default for Unlooked {
+    fn default() -> Self {
+        Self { share: None, lengths: [0.1, 0.2] }
+    }
+}
+
+impl Settings for Unlooked {}
+
+/// Settings within settings whose range is not looked at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct LooseInside {
+    /// A share, 0..=1 as only this line says.
+    share: f64,
+}
+
+impl Default for LooseInside {
+    fn default() -> Self {
+        Self { share: 0.5 }
+    }
+}
+
+impl Settings for Outer<LooseInside> {}
+
 macro_rules! with_settings {
     ($settings:ty) => {
         Entry {
@@ -203,6 +285,9 @@ fn each_lying_entry_fails_its_check_and_no_other() {
         (Entry { summary: " ", ..HONEST }, "entry-description"),
         (with_settings!(Undescribed), "entry-schema"),
         (with_settings!(Lenient), "entry-unknown-key"),
+        (with_settings!(Outer<LenientInside>), "entry-unknown-key"),
+        (with_settings!(Outer<LooseInside>), "entry-ranges"),
+        (with_settings!(Unlooked), "entry-ranges"),
         (with_settings!(Loose), "entry-ranges"),
         (careless, "entry-build-agrees"),
     ];

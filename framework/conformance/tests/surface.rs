@@ -106,7 +106,7 @@ impl SurfaceParam for Liar {
             }
             // The same face, but nearer to its middle.
             Lie::SamplesNearTheMiddle => {
-                let inner = Contact { p_OC: contact.p_OC * 0.98, ..contact };
+                let inner = Contact { p_OC: contact.p_OC * 0.8, ..contact };
                 contact = self.honest.project(&inner.tip_center(0.01), None).contact;
             }
             // On a ball around the mesh, where the kit's ball is round.

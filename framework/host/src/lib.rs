@@ -8,6 +8,7 @@ mod error;
 mod load;
 mod plugin_set;
 mod registry;
+mod shelf;
 #[cfg(test)]
 mod test_plugins;
 

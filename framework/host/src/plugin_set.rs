@@ -1,6 +1,7 @@
 //! The plugin objects of one run.
 
 use crate::choice::settings_text;
+use crate::shelf::RegistryShelf;
 use crate::{Choice, Choices, HostError, Registry, Source};
 use regrasp_abi::{Guardable, guarded};
 use regrasp_api::{
@@ -18,6 +19,8 @@ macro_rules! plugin_set {
         impl PluginSet {
             /// Builds the chosen plugins for a hand and an object, and refuses a hand with too few fingers for the contact model.
             pub fn build(registry: &Registry, choices: &Choices, parts: &Parts<'_>) -> Result<Self, HostError> {
+                let shelf = RegistryShelf { registry };
+                let parts = &Parts { plugins: &shelf, ..*parts };
                 let builder = Builder { registry, choices, parts };
                 builder.check_fingers(builder.contact_model()?.as_ref())?;
                 Ok(Self { $($field: builder.$field()?,)+ })
@@ -79,48 +82,14 @@ impl Builder<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_plugins::{all_choices, entries};
-    use regrasp_api::{FingerIndex, FingerJoints, FingerModel, Hand, Mesh, ObjectModel, TipKinematics, Vec3};
-
-    struct Fingers(usize);
-    impl Hand for Fingers {
-        fn finger_count(&self) -> usize {
-            self.0
-        }
-
-        fn finger(&self, _: FingerIndex) -> &FingerModel {
-            unreachable!("the tests build no plugin that looks at fingers")
-        }
-
-        fn fingertip_radius(&self) -> f64 {
-            0.01
-        }
-
-        fn tip_center(&self, _: FingerIndex, _: &FingerJoints) -> Vec3 {
-            Vec3::zeros()
-        }
-
-        fn tip_kinematics(&self, _: FingerIndex, _: &FingerJoints) -> TipKinematics {
-            unreachable!("the tests build no plugin that moves fingers")
-        }
-
-        fn inverse(&self, _: FingerIndex, _: &Vec3, _: &FingerJoints) -> Option<FingerJoints> {
-            None
-        }
-    }
-
-    fn tetrahedron() -> ObjectModel {
-        let corners = [Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
-        let facets = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-        let mesh = Mesh::new(corners.to_vec(), facets).expect("a tetrahedron is closed");
-        ObjectModel::new(mesh, None, 0.1, 0.8)
-    }
+    use crate::test_plugins::{Fingers, all_choices, entries, tetrahedron};
 
     fn build(fingers: usize) -> HostError {
         let registry = Registry::new(entries()).unwrap();
         let choices = all_choices().resolve(&registry).unwrap();
         let object = tetrahedron();
-        let parts = Parts { object: &object, hand: &Fingers(fingers) };
+        let hand = Fingers(fingers);
+        let parts = Parts::new(&object, &hand);
         PluginSet::build(&registry, &choices, &parts).err().unwrap()
     }
 

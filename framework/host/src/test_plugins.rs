@@ -3,7 +3,7 @@
 use crate::Choices;
 use regrasp_api::{
     Build, BuildError, Built, Cone, Contact, ContactModel, Entry, FingerIndex, NoSettings, Parts, Settings,
-    Slot, StabilityTest, check_settings,
+    Slot, StabilityTest, check_settings, FingerJoints, FingerModel, Hand, Mesh, ObjectModel, TipKinematics, Vec3,
 };
 use serde::{Deserialize, Serialize};
 
@@ -74,4 +74,40 @@ pub fn all_choices() -> Choices {
     let mut choices = Choices::default();
     Slot::ALL.into_iter().zip(ids).for_each(|(slot, id)| choices.use_plugin(slot, id));
     choices
+}
+
+/// A hand that knows how many fingers it has, and nothing else.
+pub struct Fingers(pub usize);
+impl Hand for Fingers {
+    fn finger_count(&self) -> usize {
+        self.0
+    }
+
+    fn finger(&self, _: FingerIndex) -> &FingerModel {
+        unreachable!("the tests build no plugin that looks at fingers")
+    }
+
+    fn fingertip_radius(&self) -> f64 {
+        0.01
+    }
+
+    fn tip_center(&self, _: FingerIndex, _: &FingerJoints) -> Vec3 {
+        Vec3::zeros()
+    }
+
+    fn tip_kinematics(&self, _: FingerIndex, _: &FingerJoints) -> TipKinematics {
+        unreachable!("the tests build no plugin that moves fingers")
+    }
+
+    fn inverse(&self, _: FingerIndex, _: &Vec3, _: &FingerJoints) -> Option<FingerJoints> {
+        None
+    }
+}
+
+/// The least object.
+pub fn tetrahedron() -> ObjectModel {
+    let corners = [Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
+    let facets = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let mesh = Mesh::new(corners.to_vec(), facets).expect("a tetrahedron is closed");
+    ObjectModel::new(mesh, None, 0.1, 0.8)
 }

@@ -1,7 +1,7 @@
 //! What a plan file holds. SI units; keys in the order of the fields.
 
 use crate::{Claims, ObjectRecord, PlanCertificate, Statistics};
-use regrasp_api::{Problem, Slot};
+use regrasp_api::{Figure, Problem, Slot};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -66,7 +66,7 @@ pub struct ResolvedScenario {
 }
 
 /// What one plugin has to say of a plan.
-pub type PluginNotes = BTreeMap<String, serde_json::Value>;
+pub type PluginNotes = BTreeMap<String, Figure>;
 
 /// A plugin with its settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

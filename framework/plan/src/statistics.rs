@@ -1,5 +1,6 @@
 //! How the search went: counts that the seed determines, and times that it does not.
 
+use crate::PluginNotes;
 use regrasp_api::{Reason, Slot, Tally};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -45,6 +46,15 @@ pub fn plugin_statistics(tally: &Tally) -> BTreeMap<Slot, PluginStatistics> {
         if tally.calls(slot) > 0 || !rejections.is_empty() {
             all.insert(slot, PluginStatistics { calls: tally.calls(slot), rejections });
         }
+    }
+    all
+}
+
+/// What the plugins noted, by slot and name, from a search's counts.
+pub fn plugin_notes(tally: &Tally) -> BTreeMap<Slot, PluginNotes> {
+    let mut all: BTreeMap<Slot, PluginNotes> = BTreeMap::new();
+    for note in tally.notes() {
+        all.entry(note.slot).or_default().insert(note.name.to_owned(), note.figure);
     }
     all
 }

@@ -2,6 +2,7 @@
 //! built, and that a plan which was verified.
 
 mod audit;
+mod cones;
 mod error;
 mod plan_file;
 pub mod scenario;

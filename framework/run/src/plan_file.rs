@@ -1,10 +1,10 @@
 //! The plan file of an outcome.
 
+use crate::cones::Cones;
 use crate::{RunError, Setup};
-use regrasp_api::{Contact, FingerIndex};
 use regrasp_plan::{
-    Claims, ConeClaim, ContactClaim, Format, MarginFrame, Motion, Plan, PluginChoice, ResolvedScenario,
-    StoppedBy, TransferLaw, VERSION,
+    Claims, ContactClaim, Format, MarginFrame, Plan, PluginChoice, ResolvedScenario, StoppedBy, TransferLaw,
+    VERSION,
 };
 use regrasp_planner::Outcome;
 use serde_json::Value;
@@ -17,6 +17,11 @@ impl Setup<'_> {
         seed: u64,
         stopped_by: Option<StoppedBy>,
     ) -> Result<Plan, RunError> {
+        let cones =
+            Cones::of(&outcome.motion, self.plugins.contact_model.as_ref(), self.scenario.object.friction);
+        let mut segments = regrasp_plan::records(&outcome.motion, self.hand())?;
+        let mut claims = self.claims(&cones);
+        claims.contact.cones = cones.record(&mut segments);
         Ok(Plan {
             format: Format::RegraspPlan,
             version: VERSION,
@@ -24,13 +29,13 @@ impl Setup<'_> {
             seed,
             versions: [("regrasp".to_owned(), env!("CARGO_PKG_VERSION").to_owned())].into(),
             object: None,
-            notes: Default::default(),
-            claims: self.claims(&outcome.motion),
+            notes: regrasp_plan::plugin_notes(&outcome.tally),
+            claims,
             goals_reached: outcome.goal_ends.clone(),
             stopped_by,
             statistics: outcome.statistics.clone(),
             certificate: None,
-            segments: regrasp_plan::records(&outcome.motion, self.hand())?,
+            segments,
         })
     }
 
@@ -46,23 +51,14 @@ impl Setup<'_> {
         }
     }
 
-    /// What the plan claims: one cone for all contacts, or none where they differ.
-    fn claims(&self, motion: &Motion) -> Claims {
-        let object = &self.scenario.object;
-        let cone = |(finger, contact): (FingerIndex, &Contact)| {
-            ConeClaim::from_cone(&self.plugins.contact_model.cone(finger, contact, object.friction))
-        };
-        let states = motion.segments.iter().flat_map(|segment| &segment.states);
-        let mut cones =
-            states.flat_map(|q| q.contacts.iter().filter_map(|(i, c)| Some((i, c.as_ref()?)))).map(cone);
-        let first = cones.next().flatten();
-        let cone = first.filter(|_| cones.all(|other| other == first));
+    /// What the plan claims, but for the cones of contacts that share none.
+    fn claims(&self, cones: &Cones) -> Claims {
         let model = self.choices().choice(regrasp_api::Slot::ContactModel).id.clone();
         Claims {
-            contact: ContactClaim { model, cone, cones: vec![] },
+            contact: ContactClaim { model, cone: cones.shared(), cones: Vec::new() },
             criterion: self.plugins.stability.criterion(),
             transfer_law: TransferLaw::of_fingertips(self.hand().fingertip()),
-            margin: MarginFrame::of_object(object),
+            margin: MarginFrame::of_object(&self.scenario.object),
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::RunError;
 use crate::error;
 use crate::scenario::{Scenario, ScenarioError};
 use regrasp_abi::GuardedService;
-use regrasp_api::{Clearance, Hand, Interrupt, Parts, Pose, PoseDescription, PoseError, Refuse};
+use regrasp_api::{Clearance, Hand, Interrupt, Parts, Pose, PoseDescription, PoseError, Refuse, Vec3};
 use regrasp_host::{Choices, PluginSet, Registry, Source};
 use regrasp_plan::{Plan, StoppedBy};
 use regrasp_planner::{Clock, Outcome, PlanError, Progress, Request, Status, Stuck};
@@ -124,7 +124,13 @@ impl<'a> Setup<'a> {
         )
         .map_err(|error| scenario.refuse(&error))?;
         let poses = poses(scenario, &clearance)?;
-        let parts = Parts { object: &scenario.object, hand: scenario.hand.as_ref() };
+        let parts = Parts {
+            g_H: Vec3::from(scenario.problem.gravity),
+            tolerances: limits.tolerances,
+            resolution: limits.resolution,
+            landmarks: &poses,
+            ..Parts::new(&scenario.object, scenario.hand.as_ref())
+        };
         let plugins = PluginSet::build(registry, &choices, &parts)?;
         let loaded =
             |id: &str| registry.find(id).is_some_and(|entry| registry.source(entry) != Source::BuiltIn);

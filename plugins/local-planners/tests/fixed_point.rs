@@ -105,7 +105,7 @@ fn what_stops_a_transfer_has_its_reason() {
 fn balls_and_points_are_for_one_transfer_planner_each() {
     let build = |id: &str, hand: HandDescription| {
         let bench = Bench::new(hand, support::sphere());
-        let parts = Parts { object: &bench.object, hand: &*bench.hand };
+        let parts = Parts::new(&bench.object, &*bench.hand);
         let entry = inventory::iter::<Entry>.into_iter().find(|entry| entry.id == id).unwrap();
         let Build::LocalPlanner(build) = entry.build else { panic!("another role") };
         build("", &parts).map(drop)

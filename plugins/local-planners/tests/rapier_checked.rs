@@ -9,7 +9,7 @@ use regrasp_local_planners::{RapierChecked, RapierCheckedSettings, Rolling, Roll
 use support::{Bench, context};
 
 fn checked(bench: &Bench, settings: RapierCheckedSettings) -> RapierChecked {
-    RapierChecked::new(settings, &Parts { object: &bench.object, hand: &*bench.hand }).unwrap()
+    RapierChecked::new(settings, &Parts::new(&bench.object, &*bench.hand)).unwrap()
 }
 
 fn heavy_task(bench: &Bench) -> Task<'_> {

@@ -11,6 +11,7 @@ mod grasp_line;
 mod interleaving;
 mod lift_over;
 mod nonnegative;
+mod plugins;
 mod sampler;
 mod steps;
 mod surface;
@@ -24,5 +25,6 @@ pub use geometry::{Closest, closest_on_facet, closest_on_mesh, closest_on_primit
 pub use grasp_line::GraspLine;
 pub use interleaving::Interleaving;
 pub use lift_over::LiftOver;
+pub use plugins::ReferencePlugins;
 pub use sampler::RejectionSampler;
 pub use surface::FacetSurface;

@@ -5,8 +5,9 @@ use crate::law::{Law, Subject, pure, random};
 use crate::reference::{Closure, closure};
 use crate::report::{Fault, Finding, broken, ensure};
 use regrasp_api::{
-    Build, Cone, Contact, ContactModel, FingerIndex, Grasp, GraspContact, MAX_FINGERS, Random, Vec3,
+    Build, Cone, Contact, ContactModel, FingerIndex, Grasp, GraspContact, MAX_FINGERS, Random, Vec3, tangents,
 };
+use regrasp_audit::laws::{self, Broken};
 
 pub(crate) const LAWS: &[Law] = &[
     Law {
@@ -28,6 +29,21 @@ pub(crate) const LAWS: &[Law] = &[
         name: "spinning-cone",
         why: "a contact that spins transmits no torsion, and no more of anything than one at rest",
         check: spinning_cone,
+    },
+    Law {
+        name: "torsion-bounded",
+        why: "a torsional radius is a length in metres: one in millimetres holds everything",
+        check: torsion_bounded,
+    },
+    Law {
+        name: "tangent-frames",
+        why: "tangents are a convention: a cone that follows them turns on the object where they change branch",
+        check: tangent_frames,
+    },
+    Law {
+        name: "facet-numbers",
+        why: "facets are numbered as the mesh happens to be cut, and transfers carry the number along",
+        check: facet_numbers,
     },
     Law {
         name: "fewest-contacts",
@@ -60,45 +76,35 @@ fn contacts() -> Vec<Contact> {
     (0..12).map(|_| contact(&mut random)).collect()
 }
 
-/// The largest value over the cone's slice at unit normal force of the product with `w` = (t1, t2, torsion / m).
-pub(crate) fn support(cone: &Cone<'_>, w: &Vec3) -> f64 {
-    match cone {
-        Cone::Elliptic { mu, gamma } => (mu * mu * (w.x * w.x + w.y * w.y) + (gamma * w.z).powi(2)).sqrt(),
-        Cone::Polyhedral(edges) => {
-            let value = |t: [f64; 2], torsion: f64| t[0] * w.x + t[1] * w.y + torsion * w.z;
-            edges.iter().map(|e| value(e.tangential, e.torsion)).fold(f64::NEG_INFINITY, f64::max)
-        }
-    }
-}
-
 /// Directions over the slice: along the axes, and spread.
 fn directions() -> Vec<Vec3> {
     let mut random = random(2);
     let axes = [Vec3::x(), -Vec3::x(), Vec3::y(), -Vec3::y(), Vec3::z(), -Vec3::z()];
-    axes.into_iter().chain((0..60).map(|_| random.direction())).collect()
+    axes.into_iter().chain((0..60).map(|_| random.direction())).chain(laws::directions()).collect()
 }
 
-fn cone_valid(subject: &Subject<'_>) -> Finding {
+/// Which contact, for messages.
+fn place(contact: &Contact, mu: f64) -> String {
+    format!("facet {}, normal {:.2?}, μ = {mu}", contact.facet, contact.n_O.as_slice())
+}
+
+/// Tries something on every contact and friction coefficient.
+fn on_cones(
+    subject: &Subject<'_>,
+    check: impl Fn(&dyn ContactModel, &Contact, f64) -> Result<(), Broken>,
+) -> Finding {
     let model = build(subject)?;
     for contact in contacts() {
         for mu in FRICTIONS {
-            let cone = model.cone(FINGER, &contact, mu);
-            let text = || format!("the cone at μ = {mu}: {cone:?}");
-            let finite = match &cone {
-                Cone::Elliptic { mu, gamma } => {
-                    mu.is_finite() && gamma.is_finite() && *mu >= 0.0 && *gamma >= 0.0
-                }
-                Cone::Polyhedral(edges) => {
-                    let finite = |x: &f64| x.is_finite();
-                    edges.iter().all(|e| e.tangential.iter().all(finite) && e.torsion.is_finite())
-                        && !edges.is_empty()
-                }
-            };
-            ensure(finite, text)?;
-            ensure(directions().iter().all(|w| support(&cone, w) >= -1e-12), text)?;
+            check(&*model, &contact, mu)
+                .map_err(|fault| Fault::Broken(format!("{}: {}", place(&contact, mu), fault.what)))?;
         }
     }
     Ok(())
+}
+
+fn cone_valid(subject: &Subject<'_>) -> Finding {
+    on_cones(subject, |model, contact, mu| laws::cone_valid(&model.cone(FINGER, contact, mu)))
 }
 
 fn cone_monotone(subject: &Subject<'_>) -> Finding {
@@ -107,8 +113,8 @@ fn cone_monotone(subject: &Subject<'_>) -> Finding {
         for pair in FRICTIONS.windows(2) {
             for w in directions() {
                 // Values are copied out at once: a model may own one buffer of edges only for each friction.
-                let low = support(&model.cone(FINGER, &contact, pair[0]), &w);
-                let high = support(&model.cone(FINGER, &contact, pair[1]), &w);
+                let low = laws::support(&model.cone(FINGER, &contact, pair[0]), &w);
+                let high = laws::support(&model.cone(FINGER, &contact, pair[1]), &w);
                 ensure(high >= low - 1e-12, || {
                     format!("along {w:?} the cone shrinks from {low} to {high} as μ grows over {pair:?}")
                 })?;
@@ -119,35 +125,88 @@ fn cone_monotone(subject: &Subject<'_>) -> Finding {
 }
 
 fn cone_within_friction(subject: &Subject<'_>) -> Finding {
+    on_cones(subject, |model, contact, mu| laws::cone_within_friction(&model.cone(FINGER, contact, mu), mu))
+}
+
+/// The torsional radius of a patch: more than this is no fingertip's, whatever its material.
+const MOST_TORSION: f64 = 0.1;
+
+fn torsion_bounded(subject: &Subject<'_>) -> Finding {
+    on_cones(subject, |model, contact, mu| {
+        let cone = model.cone(FINGER, contact, mu);
+        let reach = [1.0, -1.0].map(|sign| laws::support(&cone, &Vec3::new(0.0, 0.0, sign)));
+        let most = reach[0].max(reach[1]);
+        laws::ensure("torsion-bounded", most <= MOST_TORSION, || {
+            format!("a torque of {most:.3} N·m per newton; γ is a length in metres, at most {MOST_TORSION} m")
+        })
+    })
+}
+
+fn spinning_cone(subject: &Subject<'_>) -> Finding {
+    on_cones(subject, |model, contact, mu| {
+        let (spinning, resting) = (model.spinning_cone(FINGER, contact, mu), model.cone(FINGER, contact, mu));
+        laws::cone_valid(&spinning)?;
+        laws::ensure("spinning-cone", !spinning.carries_torsion(), || {
+            format!("{spinning:?} carries torsion")
+        })?;
+        laws::cone_inside("spinning-cone", &spinning, &resting)?;
+        // Who forgets what a contact keeps that spins is left with a frictionless one.
+        let lost = reach(&spinning) == 0.0 && reach(&resting.without_torsion()) > 1e-6;
+        laws::ensure("spinning-cone", !lost, || {
+            "it keeps no friction at all, though the cone without torsion has some".into()
+        })
+    })
+}
+
+/// The largest tangential force.
+fn reach(cone: &Cone<'_>) -> f64 {
+    let ring = (0..32).map(|k| (std::f64::consts::TAU * f64::from(k) / 32.0).sin_cos());
+    ring.map(|(sin, cos)| laws::support(cone, &Vec3::new(cos, sin, 0.0))).fold(0.0, f64::max)
+}
+
+/// The largest force along a tangent given in O.
+fn reach_along(cone: &Cone<'_>, contact: &Contact, direction_O: &Vec3) -> f64 {
+    let [t1, t2] = tangents(&-contact.n_O);
+    laws::support(cone, &Vec3::new(direction_O.dot(&t1), direction_O.dot(&t2), 0.0))
+}
+
+/// A cone is a fact about the object: two contacts with all but the same normal have all but the same cone in O, whichever way their tangents
+/// point. Where [`tangents`] changes branch, a model that fixes its edges to them jumps.
+fn tangent_frames(subject: &Subject<'_>) -> Finding {
     let model = build(subject)?;
-    for contact in contacts() {
-        for mu in FRICTIONS {
-            for k in 0..64 {
-                let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 64.0).sin_cos();
-                let reach = support(&model.cone(FINGER, &contact, mu), &Vec3::new(cos, sin, 0.0));
-                ensure(reach <= mu + 1e-9, || format!("tangential forces up to {reach} at μ = {mu}"))?;
-            }
+    // |n.x| = 0.6 is where `any_orthogonal` takes another axis.
+    for (y, z) in [(0.8_f64, 0.0_f64), (0.0, 0.8), (0.48, -0.64), (-0.64, 0.48)] {
+        let contact = |x: f64| {
+            let n_O = Vec3::new(x, y, z).normalize();
+            Contact { facet: 0, p_OC: n_O * 0.03, n_O }
+        };
+        let (here, there) = (contact(0.6 - 1e-7), contact(0.6 + 1e-7));
+        let [a, b] = [&here, &there].map(|contact| model.cone(FINGER, contact, 0.76));
+        for k in 0..16 {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 16.0).sin_cos();
+            let [t1, t2] = tangents(&-here.n_O);
+            let direction = t1 * cos + t2 * sin;
+            let reaches = [reach_along(&a, &here, &direction), reach_along(&b, &there, &direction)];
+            ensure((reaches[0] - reaches[1]).abs() <= 0.05, || {
+                let [x, y] = reaches;
+                format!(
+                    "the reach along one direction in O jumps from {x:.3} to {y:.3} where the tangents change branch"
+                )
+            })?;
         }
     }
     Ok(())
 }
 
-fn spinning_cone(subject: &Subject<'_>) -> Finding {
+/// A cone belongs to a place, not to the number of a facet: a mesh that is cut another way has the same.
+fn facet_numbers(subject: &Subject<'_>) -> Finding {
     let model = build(subject)?;
     for contact in contacts() {
-        for mu in FRICTIONS {
-            // Frictionless contacts may stand in for cones whose torsion cannot be told apart.
-            let spinning = model.spinning_cone(FINGER, &contact, mu);
-            ensure(!spinning.carries_torsion(), || format!("{spinning:?} at μ = {mu} carries torsion"))?;
-            for w in directions() {
-                let (low, high) = (support(&spinning, &w), support(&model.cone(FINGER, &contact, mu), &w));
-                ensure(low <= high + 1e-12, || {
-                    format!(
-                        "along {w:?} the spinning cone reaches {low}, the resting one {high}, at μ = {mu}"
-                    )
-                })?;
-            }
-        }
+        let other = Contact { facet: contact.facet ^ 5, ..contact };
+        let [a, b] = [&contact, &other].map(|contact| format!("{:?}", model.cone(FINGER, contact, 0.76)));
+        ensure(a == b, || {
+            format!("{}: another cone for facet number {}", place(&contact, 0.76), other.facet)
+        })?;
     }
     Ok(())
 }
@@ -180,8 +239,13 @@ fn some_closed(model: &dyn ContactModel, contacts: usize) -> bool {
 }
 
 fn model_pure(subject: &Subject<'_>) -> Finding {
-    let model = build(subject)?;
+    let (model, fresh) = (build(subject)?, build(subject)?);
     let contacts = contacts();
+    // A fresh object that is asked in reverse order answers the same.
+    for contact in contacts.iter().rev() {
+        let [a, b] = [&model, &fresh].map(|model| format!("{:?}", model.cone(FINGER, contact, 0.76)));
+        ensure(a == b, || format!("{}: a fresh object gives another cone", place(contact, 0.76)))?;
+    }
     pure(contacts.len() * FRICTIONS.len(), |i| {
         let (contact, mu) = (&contacts[i / FRICTIONS.len()], FRICTIONS[i % FRICTIONS.len()]);
         Ok::<_, Fault>((format!("{:?}", model.cone(FINGER, contact, mu)), model.fewest_contacts()))

@@ -1,13 +1,11 @@
 //! The runs of a study on several threads, each run on one of its own.
 
-use super::timed::{self, Meter};
-use super::{Folder, Prepared, RunKey, RunName, RunRecord, StudyError};
-use regrasp_api::{Interrupt, take_fault};
-use regrasp_plan::{Plan, StoppedBy};
+use super::begun::Begun;
+use super::machinery::Machinery;
+use super::{Folder, Isolate, Isolated, Made, Prepared, RunKey, RunRecord, StudyError};
+use regrasp_api::Interrupt;
 use regrasp_planner::{Clock, Silent};
-use regrasp_run::{RunOptions, Setup, Stop};
-use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
@@ -44,6 +42,14 @@ pub struct Execution<'a> {
     pub cancel: &'a dyn Interrupt,
     /// Told how far the study is.
     pub progress: &'a dyn StudyProgress,
+    /// Whether every call of a plugin is held against its role's laws; a breach makes the run an error.
+    pub audit: bool,
+    /// Whether the plan of every run is kept, and not only the baseline's.
+    pub keep_plans: bool,
+    /// Makes runs in processes of their own. Without it, a run in whose midst an earlier process ended is a failed row.
+    pub isolate: Option<&'a dyn Isolate>,
+    /// Whether all runs are made so, and not only those in whose midst an earlier process ended.
+    pub isolate_all: bool,
 }
 
 /// Makes the runs that the folder does not hold yet, and keeps each there as soon as it has ended.
@@ -57,22 +63,29 @@ pub fn execute(
     let mut keys = prepared.study.keys();
     let total = keys.len();
     keys.retain(|key| !folder.holds(*key));
+    let (begun, before) = Begun::open(folder.path())?;
+    let suspects: BTreeSet<RunKey> = before.into_iter().collect();
     // Runs that are compared follow each other, so that whatever slows the machine down for a while slows down all of them; with each seed
     // another variant is first, since the first meets cold caches.
     let variants = prepared.study.variants.len() as u64;
     keys.sort_by_key(|key| (key.scenario, key.seed, key.seed.wrapping_add(key.variant as u64) % variants));
     with.progress.begin(total - keys.len(), total);
     let job = Job {
-        prepared,
-        clock: with.clock,
+        machinery: Machinery::new(prepared, with.clock, with.cancel, with.audit),
         cancel: with.cancel,
-        tick_s: timed::tick_s(with.clock),
+        keep_plans: with.keep_plans,
+        isolate: with.isolate,
+        isolate_all: with.isolate_all,
+        begun,
+        suspects,
         keys,
         next: AtomicUsize::new(0),
         failed: AtomicBool::new(false),
     };
     make_and_keep(&job, folder, with)?;
-    Ok(job.keys.iter().all(|key| folder.holds(*key)))
+    let complete = job.keys.iter().all(|key| folder.holds(*key));
+    job.begun.close();
+    Ok(complete)
 }
 
 /// Makes the job's runs on several threads, and keeps them on this one.
@@ -87,8 +100,8 @@ fn make_and_keep(job: &Job<'_>, folder: &mut Folder, with: &Execution<'_>) -> Re
         }
         drop(sender);
         let kept = ended.iter().try_for_each(|run: Ended| {
-            folder.keep(&job.prepared.study, run.key, &run.record, run.plan.as_ref())?;
-            with.progress.ended(&run.record);
+            folder.keep(&job.machinery.prepared.study, run.key, &run.made.record, run.made.plan.as_ref())?;
+            with.progress.ended(&run.made.record);
             Ok(())
         });
         job.failed.store(kept.is_err(), Ordering::Relaxed);
@@ -99,37 +112,19 @@ fn make_and_keep(job: &Job<'_>, folder: &mut Folder, with: &Execution<'_>) -> Re
 /// A run that came to its end.
 struct Ended {
     key: RunKey,
-    record: RunRecord,
-    /// The plan, where the study keeps it.
-    plan: Option<Plan>,
-}
-
-/// Ends a run at its time limit, or with the study.
-struct Deadline<'a> {
-    clock: &'a dyn Clock,
-    at_s: Option<f64>,
-    cancel: &'a dyn Interrupt,
-}
-
-impl Interrupt for Deadline<'_> {
-    fn interrupted(&self) -> bool {
-        self.cancel.interrupted() || self.at_s.is_some_and(|at| self.clock.seconds() >= at)
-    }
-}
-
-impl Stop for Deadline<'_> {
-    fn cause(&self) -> StoppedBy {
-        if self.cancel.interrupted() { StoppedBy::Interrupt } else { StoppedBy::TimeLimit }
-    }
+    made: Made,
 }
 
 /// What the threads share.
 struct Job<'a> {
-    prepared: &'a Prepared<'a>,
-    clock: &'a dyn Clock,
+    machinery: Machinery<'a>,
     cancel: &'a dyn Interrupt,
-    /// How long reading the clock takes (s).
-    tick_s: f64,
+    keep_plans: bool,
+    isolate: Option<&'a dyn Isolate>,
+    isolate_all: bool,
+    begun: Begun,
+    /// The runs in whose midst an earlier process ended.
+    suspects: BTreeSet<RunKey>,
     /// The runs to be made, in this order.
     keys: Vec<RunKey>,
     /// Index of the run that is to be made next.
@@ -150,41 +145,29 @@ impl Job<'_> {
         }
     }
 
-    /// Makes a run; `None` where the study was cancelled meanwhile.
+    /// Makes a run, in a process of its own where that is wished or advisable; `None` where the study was cancelled meanwhile.
     fn make(&self, key: RunKey) -> Option<Ended> {
-        let setup = self.prepared.setup(key).expect("a study has no runs of what it leaves out");
-        let study = &self.prepared.study;
-        let scenario = &study.scenarios[key.scenario];
-        let variant = &study.variants[key.variant];
-        let name = RunName { scenario: &scenario.name, variant: &variant.name, seed: key.seed };
-        let limit_s = scenario.problem.limits.budget.time_limit;
-        let at_s = limit_s.map(|limit| self.clock.seconds() + limit);
-        let deadline = Deadline { clock: self.clock, at_s, cancel: self.cancel };
-        let made = catch_unwind(AssertUnwindSafe(|| self.run(setup, name, &deadline)));
-        let (record, plan) = made.unwrap_or_else(|payload| {
-            // What the panic left on this thread belongs to it, not to the next run.
-            take_fault();
-            (RunRecord::of_panic(name, panic_message(payload.as_ref())), None)
-        });
-        let plan = plan.filter(|_| study.keeps_plan(key));
-        (!self.cancel.interrupted()).then_some(Ended { key, record, plan })
-    }
-
-    fn run(&self, setup: &Setup<'_>, name: RunName<'_>, stop: &Deadline<'_>) -> (RunRecord, Option<Plan>) {
-        let meter = Meter::new(self.clock, self.tick_s);
-        let options = RunOptions { seed: name.seed, threads: 1, stop, clock: self.clock, progress: &Silent };
-        match setup.run_by(&|request| timed::solve(request, &meter), &options) {
-            Ok(run) => {
-                let hand = setup.scenario().hand.as_ref();
-                let record = RunRecord::of_run(name, &run, hand, meter.roles_s(run.planning_s));
-                (record, run.plan)
+        let study = &self.machinery.prepared.study;
+        let suspect = self.suspects.contains(&key);
+        let apart = suspect || self.isolate_all;
+        let mut made = match self.isolate.filter(|_| apart) {
+            Some(isolate) => match isolate.run(key) {
+                Isolated::Made(made) => *made,
+                Isolated::Died(how) => {
+                    Made { record: RunRecord::of_crash(study.run_name(key), &how), plan: None }
+                }
+                Isolated::Cancelled => return None,
+            },
+            None if suspect => {
+                let how = "an earlier process ended in its midst";
+                Made { record: RunRecord::of_crash(study.run_name(key), how), plan: None }
             }
-            Err(error) => (RunRecord::of_error(name, &error), None),
-        }
+            None => {
+                self.begun.add(key);
+                self.machinery.make(key)?
+            }
+        };
+        made.plan = made.plan.filter(|_| self.keep_plans || study.keeps_plan(key));
+        (!self.cancel.interrupted()).then_some(Ended { key, made })
     }
-}
-
-fn panic_message(payload: &(dyn Any + Send)) -> &str {
-    let text = payload.downcast_ref::<&str>().copied();
-    text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("(no message)")
 }

@@ -1,7 +1,7 @@
 //! A study's folder: what it holds, and whether it may be worked on.
 
 use super::journal::Journal;
-use super::{JOURNAL, RunKey, RunRecord, STUDY_VERSION, Study, StudyError, journal};
+use super::{JOURNAL, RunKey, RunName, RunRecord, STUDY_VERSION, Study, StudyError, journal};
 use regrasp_plan::{Plan, TEMPORARY, write_file, write_json};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -83,7 +83,10 @@ impl Folder {
     ) -> Result<(), StudyError> {
         // The plan first: a run that is in the journal is never made again.
         if let Some(plan) = plan {
-            let place = plan_path(&self.path, study, key.scenario);
+            let place = match study.keeps_plan(key) {
+                true => plan_path(&self.path, study, key.scenario),
+                false => further_plan_path(&self.path, study, key),
+            };
             let folder = place.parent().unwrap_or(Path::new(""));
             fs::create_dir_all(folder)
                 .map_err(|source| StudyError::Io { path: folder.to_owned(), source })?;
@@ -101,6 +104,12 @@ impl Folder {
 }
 
 impl Study {
+    /// What a run is called.
+    pub(super) fn run_name(&self, key: RunKey) -> RunName<'_> {
+        let (scenario, variant) = (&self.scenarios[key.scenario].name, &self.variants[key.variant].name);
+        RunName { scenario, variant, seed: key.seed }
+    }
+
     /// Whether the study keeps the plan of this run: for each scenario that of the first variant with the first seed.
     pub(super) fn keeps_plan(&self, key: RunKey) -> bool {
         let first = (0..self.variants.len()).find(|&variant| !self.is_left_out(key.scenario, variant));
@@ -111,6 +120,12 @@ impl Study {
 /// Where a study keeps a plan of a scenario, that of the first variant with the first seed; there is none where that run reached no goal.
 pub fn plan_path(folder: &Path, study: &Study, scenario: usize) -> PathBuf {
     folder.join(PLANS).join(format!("{}.json", study.file_stem(scenario)))
+}
+
+/// Where a study that keeps all plans keeps that of any other run: `plans/SCENARIO/VARIANT-SEED.json`, variants counted from 0.
+pub fn further_plan_path(folder: &Path, study: &Study, key: RunKey) -> PathBuf {
+    let stem = study.file_stem(key.scenario);
+    folder.join(PLANS).join(stem).join(format!("{}-{}.json", key.variant, key.seed))
 }
 
 /// Reads the study of a folder that nobody works on, and its runs.

@@ -4,6 +4,7 @@
 //! keeps each as soon as it has ended, [`Folder::finish`] writes the results. Parts of a study, made elsewhere, are joined by [`merge`].
 
 mod analysis;
+mod begun;
 mod csv;
 mod derived;
 mod draft;
@@ -14,7 +15,9 @@ mod fingerprint;
 #[cfg(test)]
 mod fixture;
 mod folder;
+mod isolate;
 mod journal;
+mod machinery;
 mod merge;
 pub mod ompl;
 mod one_run;
@@ -29,13 +32,16 @@ pub mod summary;
 mod timed;
 
 pub use analysis::*;
+pub use begun::BEGUN;
 pub use draft::*;
 pub use error::*;
 pub use execute::*;
 pub use file::*;
 pub use fingerprint::*;
 pub use folder::*;
+pub use isolate::*;
 pub use journal::JOURNAL;
+pub use machinery::make_run;
 pub use merge::*;
 pub use one_run::*;
 pub use paper_table::*;

@@ -44,6 +44,7 @@ impl RunRecord {
                 components: statistics.components,
                 goals_reached: outcome.goal_ends.len(),
                 plugins: statistics.plugins.clone(),
+                notes: regrasp_plan::plugin_notes(&outcome.tally),
             },
             motion: moved.then(|| motion_figures(run, hand)),
             certified: certified(run),
@@ -64,6 +65,12 @@ impl RunRecord {
     pub fn of_panic(name: RunName<'_>, message: &str) -> Self {
         let message = Some(format!("the framework panicked: {message}"));
         Self { status: RunStatus::Panic, message, ..Self::empty(name) }
+    }
+
+    /// The record of a run that ended its process.
+    pub fn of_crash(name: RunName<'_>, how: &str) -> Self {
+        let message = Some(format!("the run ended its process: {how}"));
+        Self { status: RunStatus::Crash, message, ..Self::empty(name) }
     }
 
     fn empty(name: RunName<'_>) -> Self {

@@ -1,7 +1,7 @@
 //! What a study keeps of one run: a row of `runs.csv`, a line of `runs.jsonl`.
 
 use regrasp_api::Slot;
-use regrasp_plan::PluginStatistics;
+use regrasp_plan::{PluginNotes, PluginStatistics};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -19,11 +19,14 @@ pub enum RunStatus {
     Error,
     /// A plugin or the framework panicked.
     Panic,
+    /// The process that made it ended: a segmentation fault, a stack overflow, an abort.
+    Crash,
 }
 
 impl RunStatus {
     /// Every status, in the order of their numbers.
-    pub const ALL: [Self; 5] = [Self::Solved, Self::NoPlan, Self::TimeOut, Self::Error, Self::Panic];
+    pub const ALL: [Self; 6] =
+        [Self::Solved, Self::NoPlan, Self::TimeOut, Self::Error, Self::Panic, Self::Crash];
 
     /// The name used in files and tables, in kebab case.
     pub fn name(self) -> &'static str {
@@ -33,6 +36,7 @@ impl RunStatus {
             Self::TimeOut => "time-out",
             Self::Error => "error",
             Self::Panic => "panic",
+            Self::Crash => "crash",
         }
     }
 }
@@ -56,7 +60,7 @@ pub struct Times {
 }
 
 /// What the search counted.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Counts {
     /// Nodes that the search generated.
@@ -69,6 +73,9 @@ pub struct Counts {
     pub goals_reached: usize,
     /// Calls of the plugin in each slot, and its rejections by cause; slots that were not called are left out.
     pub plugins: BTreeMap<Slot, PluginStatistics>,
+    /// What plugins noted under names of their own.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub notes: BTreeMap<Slot, PluginNotes>,
 }
 
 /// The motion that was found, smoothed; of all goals, or of those that were reached.

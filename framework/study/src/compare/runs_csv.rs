@@ -1,10 +1,10 @@
-//! `runs.csv`: a row for each run, the same columns in every study.
+//! `runs.csv`: a row for each run; the same columns in every study, and behind them those that plugins noted.
 
 use super::timed::{CLEARANCE, FRAMEWORK};
 use super::{Certified, MotionFigures, PHASES, RunRecord, Study, csv};
-use regrasp_api::{Reason, Slot};
+use regrasp_api::{Figure, Reason, Slot};
 use regrasp_plan::PluginChoice;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 
 type Plugins = BTreeMap<Slot, PluginChoice>;
@@ -18,7 +18,8 @@ struct Column {
 
 /// Writes the rows of the records, in their order, which must be of the study.
 pub(super) fn write_rows(study: &Study, records: &[RunRecord], out: &mut dyn Write) -> io::Result<()> {
-    let columns = columns();
+    let mut columns = columns();
+    columns.extend(note_columns(records));
     let head = columns.iter().map(|column| column.name.clone()).collect();
     out.write_all(csv::line(head).as_bytes())?;
     for record in records {
@@ -132,6 +133,33 @@ fn plugin_columns(slot: Slot) -> Vec<Column> {
     columns
 }
 
+/// What plugins noted under names of their own: mean, and how often.
+fn note_columns(records: &[RunRecord]) -> Vec<Column> {
+    let noted = |run: &RunRecord| {
+        let names =
+            run.counts.notes.iter().flat_map(|(slot, notes)| notes.keys().map(|name| (*slot, name.clone())));
+        names.collect::<Vec<_>>()
+    };
+    let names: BTreeSet<(Slot, String)> = records.iter().flat_map(noted).collect();
+    names.into_iter().flat_map(|(slot, name)| of_note(slot, &name)).collect()
+}
+
+fn of_note(slot: Slot, name: &str) -> [Column; 2] {
+    let (of_mean, of_count) = (name.to_owned(), name.to_owned());
+    let head = format!("{}.note.{name}", slot.name());
+    let count = column(format!("{head}.count"), move |run: &RunRecord, _: &Plugins| {
+        noted(run, slot, &of_count).map_or(0, |figure| figure.count).to_string()
+    });
+    let mean = column(head, move |run: &RunRecord, _: &Plugins| {
+        number(noted(run, slot, &of_mean).map(|figure| figure.mean))
+    });
+    [mean, count]
+}
+
+fn noted(run: &RunRecord, slot: Slot, name: &str) -> Option<Figure> {
+    run.counts.notes.get(&slot)?.get(name).copied()
+}
+
 fn number(value: Option<f64>) -> String {
     value.map(|value| value.to_string()).unwrap_or_default()
 }
@@ -139,7 +167,6 @@ fn number(value: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeSet;
 
     #[test]
     fn columns_are_named_once_and_begin_with_what_tells_runs_apart() {

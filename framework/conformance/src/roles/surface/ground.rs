@@ -77,10 +77,11 @@ pub(super) fn build(
 ) -> Finding<Option<Ground>> {
     let Build::Surface(build) = subject.entry.build else { return broken("it builds another role") };
     let hand = &Bench::free_sphere().world.hand;
-    let surface = match build(&subject.demands.settings, &Parts { object: &object, hand: &**hand }) {
-        Err(regrasp_api::BuildError::Unsupported(_)) => return Ok(None),
-        built => built?,
-    };
+    let surface =
+        match build(&subject.demands.settings, &Parts { object: &object, ..Bench::free_sphere().parts() }) {
+            Err(regrasp_api::BuildError::Unsupported(_)) => return Ok(None),
+            built => built?,
+        };
     Ok(Some(Ground { name, surface, object, radius: hand.fingertip_radius() }))
 }
 

@@ -28,7 +28,7 @@ fn status(run: &RunRecord) -> f64 {
         RunStatus::NoPlan => 10,
         RunStatus::TimeOut => 4,
         RunStatus::Error => 12,
-        RunStatus::Panic => 7,
+        RunStatus::Panic | RunStatus::Crash => 7,
     })
 }
 

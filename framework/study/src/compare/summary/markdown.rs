@@ -77,7 +77,10 @@ fn cells(cell: &Cell<'_>) -> [String; 10] {
     let median =
         |figure: Figure| cell.median(figure).map(|found| count_text(found.value)).unwrap_or_default();
     let paired = cell.compared.as_ref();
-    let failed = [RunStatus::Error, RunStatus::Panic].map(|status| cell.count(status)).iter().sum::<usize>();
+    let failed = [RunStatus::Error, RunStatus::Panic, RunStatus::Crash]
+        .map(|status| cell.count(status))
+        .iter()
+        .sum::<usize>();
     let failed = if failed > 0 { format!(", {}", counted(failed, "error")) } else { String::new() };
     [
         code(&cell.variant.name),
