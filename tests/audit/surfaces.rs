@@ -18,9 +18,6 @@ impl SurfaceParam for Liar {
             "long-normals" => contact.n_O *= 1.001,
             "inward" => contact.n_O = -contact.n_O,
             "a-little-outside" => contact.p_OC *= 1.001,
-            "impure" if super::odd() => {
-                contact.p_OC = contact.p_OC.lerp(&self.honest.sample(random).p_OC, 0.0)
-            }
             _ => {}
         }
         contact

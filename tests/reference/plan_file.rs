@@ -1,7 +1,7 @@
 //! The page of plan files names every key that a plan has, and no other.
 
 use crate::{page, printed};
-use regrasp::api::{Slot, check_schema};
+use regrasp::api::{Figure, Slot, check_schema};
 use regrasp::plan::{ConeClaim, ConeRecord, ContactSurface, EdgeRecord, Extreme, Holds, ObjectRecord, Plan};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -88,7 +88,7 @@ fn full(plan: &Value) -> Value {
     let edge = EdgeRecord { tangential: [0.5, 0.0], torsion: 0.0 };
     let cone = ConeClaim { mu: 0.5, gamma: 0.0 };
     plan.claims.contact.cones = vec![ConeRecord::Elliptic(cone), ConeRecord::Polyhedral(vec![edge])];
-    plan.notes.insert(Slot::Sampler, [("hits".to_owned(), json!(1))].into());
+    plan.notes.insert(Slot::Sampler, [("hits".to_owned(), Figure::one(1.0))].into());
     let figure = || Extreme { value: 1.0, place: Default::default() };
     if let Some(certificate) = &mut plan.certificate {
         certificate.holds = Some(Holds { friction: figure(), mass: figure(), disturbance: figure() });

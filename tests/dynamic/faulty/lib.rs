@@ -17,6 +17,7 @@ regrasp_abi::export_plugins!(
     NOT_CHECKED,
     NO_SCHEMA,
     NOT_DROPPED,
+    ABORTS,
 );
 
 /// Runs while the library is loaded, before anything of it is called.
@@ -234,3 +235,29 @@ const NOT_DROPPED: Entry = entry(
     &[Slot::ContactModel],
     Build::ContactModel(|_, _| Ok(Box::new(NotDropped))),
 );
+
+/// Takes the whole process down with it.
+struct Aborts;
+impl ClosedChainSampler for Aborts {
+    fn sample(
+        &self,
+        _: &Task<'_>,
+        _: PoseRequest<'_>,
+        _: FingerSet,
+        _: &mut Context<'_>,
+    ) -> Result<Option<Configuration>, CallError> {
+        std::process::abort()
+    }
+    fn close(
+        &self,
+        _: &Task<'_>,
+        _: &Pose,
+        _: &PerFinger<Option<Contact>>,
+        _: &Configuration,
+        _: &mut Context<'_>,
+    ) -> Result<Option<Configuration>, CallError> {
+        std::process::abort()
+    }
+}
+const ABORTS: Entry =
+    entry("sampler/aborts", &[Slot::Sampler], Build::Sampler(|_, _| Ok(Box::new(Aborts))));

@@ -75,7 +75,9 @@ impl SurfacePath {
 
 /// The object's surface: points, normals, shortest paths, projection.
 ///
-/// Built once for an object and a fingertip radius; prepares there what it likes. Laws: equivariant under a rigid motion
+/// Built once for an object and a fingertip radius; prepares there what it likes. There is one true surface, the object's mesh
+/// ([`crate::ObjectModel::mesh`]): points and normals are the mesh's, whatever closed form stood behind it. What a plugin chooses are paths,
+/// samples and where walks lead. Laws: equivariant under a rigid motion
 /// of the object; `geodesic` starts and ends exactly at the contacts it was given, and its length is at least the chord
 /// and symmetric in its ends to the plugin's tolerance.
 pub trait SurfaceParam: Send + Sync {
