@@ -1,8 +1,8 @@
 //! A transfer planner that wraps the default: a roll that ends with a joint close to its limit is refused, as the next one would stop there.
 
 use regrasp_api::{
-    Build, CallError, Configuration, Context, Entry, LocalPlanner, Path, Reached, Settings, SettingsError,
-    Slot, Target, Task, check_settings, inventory,
+    Build, CallError, Configuration, Context, Entry, LocalPlanner, Path, Reached, Settings, Slot, Target,
+    Task, check_settings, inventory,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

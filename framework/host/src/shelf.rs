@@ -87,7 +87,7 @@ impl Shelf for RegistryShelf<'_> {
 mod tests {
     use super::*;
     use crate::test_plugins::{Fingers, entries, tetrahedron};
-    use regrasp_api::{Contact, FingerIndex, EmptyShelf, Vec3};
+    use regrasp_api::{Contact, EmptyShelf, FingerIndex, Vec3};
 
     #[test]
     fn a_plugin_is_found_by_name_and_refused_with_what_there_is() {

@@ -2,8 +2,9 @@
 
 use crate::Choices;
 use regrasp_api::{
-    Build, BuildError, Built, Cone, Contact, ContactModel, Entry, FingerIndex, NoSettings, Parts, Settings,
-    Slot, StabilityTest, check_settings, FingerJoints, FingerModel, Hand, Mesh, ObjectModel, TipKinematics, Vec3,
+    Build, BuildError, Built, Cone, Contact, ContactModel, Entry, FingerIndex, FingerJoints, FingerModel,
+    Hand, Mesh, NoSettings, ObjectModel, Parts, Settings, Slot, StabilityTest, TipKinematics, Vec3,
+    check_settings,
 };
 use serde::{Deserialize, Serialize};
 

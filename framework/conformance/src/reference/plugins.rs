@@ -4,8 +4,8 @@ use super::{
     EdgeClosure, FacetSurface, FineRolling, GraspLine, Interleaving, LiftOver, RejectionSampler, RoundCones,
 };
 use regrasp_api::{
-    Built, ClosedChainSampler, ContactModel, GraphStrategy, LocalPlanner, Parts, Shelf, Slot,
-    StabilityTest, SurfaceParam,
+    Built, ClosedChainSampler, ContactModel, GraphStrategy, LocalPlanner, Parts, Shelf, Slot, StabilityTest,
+    SurfaceParam,
 };
 
 /// Gives the reference of a role, whatever plugin is asked for.

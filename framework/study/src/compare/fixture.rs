@@ -72,6 +72,7 @@ pub fn solved(study: &Study, key: RunKey, planning_s: f64) -> RunRecord {
             graph_nodes: 9,
             components: 1,
             goals_reached: 1,
+            notes: BTreeMap::new(),
             plugins: BTreeMap::from([(Slot::Sampler, plugin)]),
         },
         motion: Some(MotionFigures { transfers: 4, regrasps: 3, ..MotionFigures::default() }),
