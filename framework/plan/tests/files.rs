@@ -142,7 +142,8 @@ fn rich() -> Plan {
         ConeRecord::Elliptic(ConeClaim { mu: 0.5, gamma: 0.002 }),
         ConeRecord::Polyhedral(vec![edge(0.5), edge(-0.5), edge(0.0)]),
     ];
-    plan.notes.insert(regrasp_api::Slot::Sampler, [("hits".to_owned(), serde_json::json!(12))].into());
+    plan.notes
+        .insert(regrasp_api::Slot::Sampler, [("hits".to_owned(), regrasp_api::Figure::one(12.0))].into());
     let figure = |value| Extreme { value, place: Place { segment: Some(1), ..Default::default() } };
     let holds = Holds { friction: figure(0.31), mass: figure(0.4), disturbance: figure(2.5) };
     plan.certificate = Some(PlanCertificate {
