@@ -206,12 +206,20 @@ struct Lenient {}
 
 impl Settings for Lenient {}
 
-/// Settings within settings, of which the inner ones are lenient, or keep no range.
+/// Settings within settings, of which the inner ones are lenient.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-struct Outer<T> {
+struct OuterLenient {
     /// What is inside.
-    inner: T,
+    inner: LenientInside,
+}
+
+/// Settings within settings, of which the inner ones keep no range.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct OuterLoose {
+    /// What is inside.
+    inner: LooseInside,
 }
 
 /// Inner settings that ignore what they do not know.
@@ -222,7 +230,7 @@ struct LenientInside {
     on: bool,
 }
 
-impl Settings for Outer<LenientInside> {}
+impl Settings for OuterLenient {}
 
 /// Settings whose optional number and whose list are not looked at.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -257,7 +265,7 @@ impl Default for LooseInside {
     }
 }
 
-impl Settings for Outer<LooseInside> {}
+impl Settings for OuterLoose {}
 
 macro_rules! with_settings {
     ($settings:ty) => {
@@ -285,8 +293,8 @@ fn each_lying_entry_fails_its_check_and_no_other() {
         (Entry { summary: " ", ..HONEST }, "entry-description"),
         (with_settings!(Undescribed), "entry-schema"),
         (with_settings!(Lenient), "entry-unknown-key"),
-        (with_settings!(Outer<LenientInside>), "entry-unknown-key"),
-        (with_settings!(Outer<LooseInside>), "entry-ranges"),
+        (with_settings!(OuterLenient), "entry-unknown-key"),
+        (with_settings!(OuterLoose), "entry-ranges"),
         (with_settings!(Unlooked), "entry-ranges"),
         (with_settings!(Loose), "entry-ranges"),
         (careless, "entry-build-agrees"),
