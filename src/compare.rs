@@ -67,7 +67,7 @@ fn make(args: &CompareArgs, mut prepared: compare::Prepared<'_>) -> Result<(), F
         true => {
             Err(Failure::interrupted(format!("interrupted: {kept}; the same command goes on from there")))
         }
-        false => Err(Failure::bad_input(format!("the system lets no thread begin: {kept}"))),
+        false => Err(Failure::bad_input(format!("the system starts no more threads: {kept}"))),
     }
 }
 

@@ -65,7 +65,7 @@ pub fn split_slot(path: &str) -> Result<Option<(Slot, &str)>, HostError> {
     }
 }
 
-/// A value as TOML reads it; what is no TOML value is taken as a text, so that quotes can be left away.
+/// A value as TOML reads it; what is no TOML value is taken as a text, so that quotes can be omitted.
 pub fn parse(text: &str) -> Result<Value, String> {
     let table: Result<toml::Table, _> = toml::from_str(&format!("value = {text}"));
     let value = match table {

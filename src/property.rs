@@ -16,7 +16,7 @@ impl<'a> Property<'a> {
         Self { value, root }
     }
 
-    /// The schema of the value itself: behind references, and without the `null` of what may be left away.
+    /// The schema of the value itself: behind references, and without the `null` of what can be omitted.
     pub fn target(self) -> &'a Value {
         let choices = self.value.get("anyOf").and_then(Value::as_array);
         let something = choices.and_then(|all| all.iter().find(|one| one.get("$ref").is_some()));

@@ -83,7 +83,7 @@ pub struct CompareArgs {
         "threads", "skip_unsupported", "shard",
     ])]
     pub merge: Vec<PathBuf>,
-    /// The folder of the study; begun before with the same command, it is gone on with.
+    /// The folder of the study. If the same command began it before, the command continues it.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
     /// Print one JSON object instead of text.

@@ -29,7 +29,7 @@ const INTRODUCTION: &str = "\
 # Plugins and settings
 
 Each component of the algorithm is a slot that a plugin fills. A scenario chooses a plugin with a table `[plugins.SLOT]`, the command line \
-with `--use SLOT=ID` and `--set SLOT.KEY=VALUE`, which win over the scenario; the role in front of an id may be left away. `regrasp plugins` \
+with `--use SLOT=ID` and `--set SLOT.KEY=VALUE`, which win over the scenario; the role in front of an id can be omitted. `regrasp plugins` \
 prints the same as this page, for the plugins of loaded libraries too.
 
 Settings that are left out have their defaults; a value outside of its range is refused. Where a default is empty, the meaning says what \

@@ -58,7 +58,10 @@ pub fn temporary_folder() -> Result<PathBuf, String> {
             }
         }
     }
-    Err(format!("`{}` is full of our pages; name a file with `-o`", place.display()))
+    Err(format!(
+        "`{}` holds too many pages of earlier runs; delete them, or name a file with `-o`",
+        place.display()
+    ))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Choice {
-    /// The plugin's id; the role may be left away until the choice is resolved.
+    /// The plugin's id; the role can be omitted until the choice is resolved.
     pub id: String,
     /// Its settings; the plugin's defaults stand for what is absent.
     #[serde(default)]

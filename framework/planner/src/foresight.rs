@@ -1,4 +1,4 @@
-//! Looks ahead of a roll: they cost a hundredth of it, and foresee most failures.
+//! Checks before a roll: they cost a hundredth of it, and predict most of its failures.
 //!
 //! Heuristics: the contacts are taken to stay where they are, while in truth they drift as the fingertips roll, mostly to the
 //! fingers' advantage. They decide what is tried first and what is not tried at all, never what is valid.

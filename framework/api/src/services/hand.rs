@@ -85,8 +85,8 @@ pub trait Hand: Send + Sync {
 
     /// Puts the joints that others drive (mimic joints) where those have them; nothing to do in a hand without such joints.
     ///
-    /// The hand's own answers take driven joints to be there already: who changes joints by anything but [`Hand::inverse`] or the straight
-    /// way between two settled postures calls this before the joints are stored.
+    /// The hand's own answers take driven joints to be there already: code that changes joints in another way than by [`Hand::inverse`] or
+    /// by interpolation between two settled postures calls this before it stores them.
     fn settle(&self, _finger: FingerIndex, _joints: &mut FingerJoints) {}
 
     /// Whether every joint is within its limits.

@@ -163,7 +163,7 @@ pub struct LocalPlannerTables {
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct PluginTable {
-    /// The plugin's id; its role may be left away. Where absent, the settings are for the default plugin.
+    /// The plugin's id; its role can be omitted. Where absent, the settings are for the default plugin.
     #[serde(rename = "use")]
     pub id: Option<String>,
     /// The settings.

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Change {
     /// The slot.
     pub slot: Slot,
-    /// The plugin that fills it; the role may be left away. Absent where only settings change.
+    /// The plugin that fills it; the role can be omitted. Absent where only settings change.
     pub id: Option<String>,
     /// Settings that change.
     pub settings: Map<String, Value>,
