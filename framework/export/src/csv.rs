@@ -81,12 +81,11 @@ impl Table {
     }
 }
 
+/// In quotes where it must be; a name that a spreadsheet would take for a formula begins with an apostrophe.
 fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
-    } else {
-        cell.into()
-    }
+    let is_formula = cell.starts_with(['=', '+', '-', '@', '\t']) && cell.parse::<f64>().is_err();
+    let cell = if is_formula { format!("'{cell}") } else { cell.to_owned() };
+    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell }
 }
 
 #[cfg(test)]
@@ -97,6 +96,7 @@ mod tests {
     fn cells_are_quoted_where_they_must_be() {
         let mut table = Table::new(&["a".into(), "b,c".into()]);
         table.line(&["say \"x\"".into(), String::new()]);
-        assert_eq!(table.0, "a,\"b,c\"\r\n\"say \"\"x\"\"\",\r\n");
+        table.line(&["=cmd".into(), "-1.5e-3".into()]);
+        assert_eq!(table.0, "a,\"b,c\"\r\n\"say \"\"x\"\"\",\r\n'=cmd,-1.5e-3\r\n");
     }
 }
