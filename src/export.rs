@@ -19,7 +19,7 @@ mjcf  a MuJoCo model, and a trajectory of what its motors aim at, the grasp forc
 csv   a table, one row a state: time, joints by name, object pose, contacts, forces\n\
 npz   the same as NumPy arrays\n\n\
 Lengths are metres, angles radians, forces newtons; H is the hand's frame, O the object's. Forces are what the fingertips exert on the object to hold it against \
-gravity, inside the friction cones that the plan claims. Files are named after the plan.\n\n\
+gravity, with the least share of the friction that the joints' efforts allow. Files are named after the plan.\n\n\
 Examples:\n  regrasp export plan.json --to gltf\n  regrasp export plan.json --to mjcf,npz -o exported")]
 pub struct ExportArgs {
     /// A plan file.
@@ -32,9 +32,20 @@ pub struct ExportArgs {
     pub output: PathBuf,
     #[command(flatten)]
     pub overwrite: OverwriteArgs,
+    /// Most normal force of one contact (N), 0.01 to 10000; by default what the plan claims to hold by, or else what the joints can.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = grip())]
+    pub grip: Option<f64>,
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Takes a normal force (N).
+fn grip() -> impl TypedValueParser<Value = f64> {
+    clap::builder::NonEmptyStringValueParser::new().try_map(|text: String| match text.trim().parse::<f64>() {
+        Ok(force) if (0.01..=1e4).contains(&force) => Ok(force),
+        _ => Err("it must be a number in 0.01..=10000"),
+    })
 }
 
 /// Takes the formats by their names.
@@ -50,7 +61,7 @@ pub fn run(args: &ExportArgs) -> Result<(), Failure> {
     let refuse = |error: ExportError| {
         Failure::bad_input(format!("`{}` cannot be exported: {error}", args.plan.display()))
     };
-    let scene = Scene::new(&plan).map_err(refuse)?;
+    let scene = Scene::with_grip(&plan, args.grip).map_err(refuse)?;
     let stem = args.plan.file_stem().map_or("plan".into(), |stem| stem.to_string_lossy());
     let mut files: Vec<(Format, File)> = Vec::new();
     for &format in &args.to {

@@ -9,6 +9,7 @@ mod export;
 mod failure;
 mod grasps;
 mod hand;
+mod holds;
 mod man;
 mod new_plugin;
 mod numbers;

@@ -7,8 +7,8 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 The object is free, under the gravity that the plan's scenario gives (0, 0, -9.81 m/s² in the hand's frame where it gave none), and held by friction alone. Each joint is \
-driven by a motor with a stiffness, a damping and the joint's effort limit; it follows the plan, and what the grasp needs is fed forward: forces that a conic \
-program chooses in every state, inside the friction cones and the efforts. Nothing looks at where the object is. Between two segments the forces pass over to the fingers that hold next.\n\n\
+driven by a motor with a stiffness, a damping and the joint's effort limit; it follows the plan, and what the grasp needs is fed forward: in every state the \
+forces that need the least share of the friction within the efforts. Nothing looks at where the object is. Between two segments the forces pass over to the fingers that hold next.\n\n\
 Reported for each segment: the largest deviation of the object from the plan, the largest slip of a fingertip, where the object is at the segment's end, and what went wrong. The object has \
 arrived if it is within 5 mm and 5° of the plan's end. It counts as dropped where it is 20 mm or 30° off; the replay ends there.\n\n\
 Plans rely on force closure with 0.8 of the object's friction (`friction_margin` under [limits.resolution] in the scenario). Force closure knows no efforts: now and then a grasp of three fingers needs \
@@ -39,7 +39,7 @@ pub struct ReplayArgs {
     /// Multiply the plan's times by this, 0.1 to 100: plans are as fast as the joints can be, and grips balance the weight alone.
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 2.0, value_parser = number::<0, 100>)]
     pub slowdown: f64,
-    /// Most normal force of one contact (N); by default the greater of 2 N and three times the object's weight.
+    /// Most normal force of one contact (N); by default what the plan claims to hold by, or else what the joints can.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = number::<0, 10_000>)]
     pub grip: Option<f64>,
     /// Gravity in the hand's frame (m/s²), such as 0,0,9.81; by default the scenario's.

@@ -1,5 +1,6 @@
 //! What `plan` says about a run.
 
+use crate::holds::holds_lines;
 use crate::table::Table;
 use crate::verify::{check_table, number};
 use regrasp::api::{Reason, Slot, Tally};
@@ -128,6 +129,7 @@ impl Summary<'_> {
         figure("clearance", &certificate.clearance, 1e3, " mm");
         figure("slip", &certificate.slip, 1e3, " mm");
         figure("closure", &certificate.closure_residual, 1e6, " µm");
+        text += &holds_lines(certificate.holds.as_ref(), &self.scenario.problem);
         text + &self.remarks()
     }
 

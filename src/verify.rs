@@ -1,6 +1,7 @@
 //! `regrasp verify`
 
 use crate::args::VerifyArgs;
+use crate::holds::holds_lines;
 use crate::table::Table;
 use crate::{Failure, say, say_json};
 use regrasp::api::Problem;
@@ -16,9 +17,10 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     } else {
         let word = if verdict.valid { "valid" } else { "not valid" };
         say(&format!(
-            "{}: {word}\n{}",
+            "{}: {word}\n{}{}",
             args.plan.display(),
-            check_table(verdict.checks.iter(), &plan.scenario.problem)
+            check_table(verdict.checks.iter(), &plan.scenario.problem),
+            holds_lines(verdict.certificate.as_ref().and_then(|c| c.holds.as_ref()), &plan.scenario.problem)
         ))?;
     }
     if verdict.valid {

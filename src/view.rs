@@ -68,9 +68,9 @@ pub fn show_run(args: &PlanArgs, setup: &Setup<'_>, run: &Run, saved: Option<&Pa
     }
     let plan = match &run.plan {
         Some(plan) => plan.clone(),
-        None if args.view_graph => {
-            setup.plan_file(&run.outcome, args.seed, run.stopped_by).map_err(Failure::refused)?
-        }
+        None if args.view_graph => setup
+            .plan_file(&setup.scenario().problem, &run.outcome, args.seed, run.stopped_by)
+            .map_err(Failure::refused)?,
         None => return tell("there is no motion to show; `--view-graph` shows what was tried"),
     };
     let mut extras = page::of_plan(&plan);

@@ -9,7 +9,7 @@ use regrasp::physics::{
     Happening, Moment, PhysicsError, ReplayReport, ReplaySettings, SimulationSettings, Stage, StageReport,
     replay,
 };
-use regrasp::plan::{Motion, Plan, SegmentKind};
+use regrasp::plan::{Claims, Criterion, Motion, Plan, SegmentKind};
 use serde_json::{Value, json};
 
 /// Slip of a contact (m) and gap between a holding fingertip and the object (m) that are worth a word.
@@ -55,7 +55,7 @@ impl<'a> Told<'a> {
         let motion = regrasp::plan::motion(plan).map_err(Failure::bad_input)?;
         let mut problem = plan.scenario.problem.clone();
         problem.gravity = args.gravity.unwrap_or(problem.gravity);
-        let settings = settings(args, &problem);
+        let settings = settings(args, &problem, &plan.claims);
         // A plan's meshes are given in place: there is no file to look for.
         let report = replay(&problem, &stages(&motion), &settings);
         let report =
@@ -261,7 +261,7 @@ fn moment(moment: &Moment) -> Value {
     })
 }
 
-fn settings(args: &ReplayArgs, problem: &Problem) -> ReplaySettings {
+fn settings(args: &ReplayArgs, problem: &Problem, claims: &Claims) -> ReplaySettings {
     let default = SimulationSettings::default();
     let simulation = SimulationSettings {
         friction: Some(problem.object.friction * args.friction_scale),
@@ -270,6 +270,14 @@ fn settings(args: &ReplayArgs, problem: &Problem) -> ReplaySettings {
         linear_stiffness: default.linear_stiffness * args.stiffness_scale,
         grip: args.grip,
         ..default
+    };
+    let simulation = match claims.criterion {
+        Criterion::Holding(load) => SimulationSettings {
+            relied: load.friction_factor,
+            grip: args.grip.or(load.max_normal_force),
+            ..simulation
+        },
+        _ => simulation,
     };
     ReplaySettings { simulation, slowdown: args.slowdown, ..Default::default() }
 }

@@ -398,6 +398,7 @@ def exported(arguments, scratch):
         return arguments.plan
     if not arguments.plan.is_file():
         raise BadInput(f"{arguments.plan}: there is no such file or folder")
+    refuse_points(arguments.plan)
     try:
         done = subprocess.run(
             [arguments.regrasp, "export", arguments.plan, "--to", "mjcf", "-o", scratch], capture_output=True, text=True, check=False
@@ -407,6 +408,17 @@ def exported(arguments, scratch):
     if done.returncode:
         raise BadInput(done.stderr.strip())
     return Path(scratch)
+
+
+def refuse_points(plan):
+    """Refuses plans of hands that declare point fingertips: simulated ones are balls, and balls roll."""
+    try:
+        told = json.loads(plan.read_text())
+    except (OSError, ValueError):
+        return  # the export says what is wrong with the file
+    hand = told.get("scenario", {}).get("problem", {}).get("hand", {}) if isinstance(told, dict) else {}
+    if hand.get("fingertip") == "point":
+        raise BadInput("the hand declares point fingertips, which stay where they are set down, but simulated ones are balls, which roll")
 
 
 def load(folder):

@@ -91,7 +91,8 @@ fn full(plan: &Value) -> Value {
     plan.notes.insert(Slot::Sampler, [("hits".to_owned(), Figure::one(1.0))].into());
     let figure = || Extreme { value: 1.0, place: Default::default() };
     if let Some(certificate) = &mut plan.certificate {
-        certificate.holds = Some(Holds { friction: figure(), mass: figure(), disturbance: figure() });
+        certificate.holds =
+            Some(Holds { friction: figure(), mass: figure(), disturbance: figure(), effort: Some(figure()) });
     }
     let state = &mut plan.segments[0].states[0];
     state.velocities = Some(state.joints.clone());

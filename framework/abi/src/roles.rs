@@ -74,6 +74,10 @@ impl StabilityTest for Guard<dyn StabilityTest> {
     fn criterion(&self) -> Criterion {
         self.value(|test| test.criterion(), Criterion::default)
     }
+
+    fn uses_efforts(&self) -> bool {
+        self.value(|test| test.uses_efforts(), || false)
+    }
 }
 
 /// A contact that exists on every surface, for want of a true one.

@@ -1,6 +1,6 @@
 //! Grasps as the stability tests see them: contacts with the cones of wrenches that they can transmit.
 
-use crate::{FingerIndex, MAX_FINGERS, Vec3, any_orthogonal};
+use crate::{EffortBounds, FingerIndex, MAX_FINGERS, Vec3, any_orthogonal};
 use std::borrow::Cow;
 
 /// The wrenches that one contact can transmit, per unit of normal force.
@@ -136,6 +136,8 @@ pub struct GraspContact<'a> {
 pub struct Grasp<'a> {
     contacts: [GraspContact<'a>; MAX_FINGERS],
     count: u8,
+    /// One for each contact, or none at all: most tests ask for none, and pay nothing.
+    efforts: Vec<EffortBounds>,
     /// Acceleration of gravity in the object's frame (m/s²); zero where gravity is not modelled.
     pub g_O: Vec3,
 }
@@ -149,13 +151,25 @@ impl<'a> Grasp<'a> {
             n_O: Vec3::new(0.0, 0.0, 1.0),
             cone: Cone::FRICTIONLESS,
         };
-        Self { contacts: [const { NOTHING }; MAX_FINGERS], count: 0, g_O }
+        Self { contacts: [const { NOTHING }; MAX_FINGERS], count: 0, efforts: Vec::new(), g_O }
     }
 
     /// Adds a contact; at most [`MAX_FINGERS`].
     pub fn push(&mut self, contact: GraspContact<'a>) {
         self.contacts[usize::from(self.count)] = contact;
         self.count += 1;
+    }
+
+    /// Adds a contact with what its finger's joints can do there; either all contacts of a grasp have that or none has.
+    pub fn push_bounded(&mut self, contact: GraspContact<'a>, efforts: EffortBounds) {
+        debug_assert_eq!(self.efforts.len(), usize::from(self.count));
+        self.efforts.push(efforts);
+        self.push(contact);
+    }
+
+    /// What the joints behind the contact with this number can do; `None` where the grasp does not say.
+    pub fn efforts(&self, contact: usize) -> Option<&EffortBounds> {
+        self.efforts.get(contact)
     }
 
     /// The contacts, in the order in which they were added.
@@ -167,10 +181,12 @@ impl<'a> Grasp<'a> {
     #[must_use]
     pub fn without(&self, finger: FingerIndex) -> Self {
         let mut rest = Self::new(self.g_O);
-        self.contacts()
-            .iter()
-            .filter(|contact| contact.finger != finger)
-            .for_each(|contact| rest.push(contact.clone()));
+        for (i, contact) in self.contacts().iter().enumerate().filter(|(_, c)| c.finger != finger) {
+            match self.efforts(i) {
+                Some(efforts) => rest.push_bounded(contact.clone(), *efforts),
+                None => rest.push(contact.clone()),
+            }
+        }
         rest
     }
 }
@@ -183,7 +199,12 @@ pub struct Hint {
     /// What the numbers are, as the plugin likes; 0 means "nothing known".
     pub tag: u64,
     /// The plugin's numbers, in the plugin's units.
-    pub values: [f64; 8],
+    pub values: [f64; Hint::VALUES],
+}
+
+impl Hint {
+    /// How many numbers a hint holds: the forces of five point contacts, or of four soft ones.
+    pub const VALUES: usize = 16;
 }
 
 #[cfg(test)]

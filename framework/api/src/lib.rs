@@ -51,6 +51,7 @@
 
 mod configuration;
 mod context;
+mod effort;
 mod error;
 mod fault;
 mod figure;
@@ -76,6 +77,7 @@ mod task;
 
 pub use configuration::*;
 pub use context::*;
+pub use effort::*;
 pub use error::*;
 pub use fault::*;
 pub use figure::*;

@@ -1,8 +1,9 @@
 //! The immutable task that all calls of one search share.
 
 use crate::{
-    CallError, Clearance, Cone, Configuration, Contact, ContactModel, Context, FingerIndex, FingerSet, Grasp,
-    GraspContact, Hand, ObjectModel, Pose, Reason, Resolution, StabilityTest, SurfaceParam, Tolerances, Vec3,
+    CallError, Clearance, Cone, Configuration, Contact, ContactModel, Context, EffortBounds, FingerIndex,
+    FingerSet, Grasp, GraspContact, Hand, ObjectModel, Pose, Reason, Resolution, StabilityTest, SurfaceParam,
+    Tolerances, Vec3,
 };
 
 /// The planner's predicate for nodes: collision-free, stable, and easy to leave by transfers and regrasps.
@@ -88,9 +89,15 @@ impl<'a> Task<'a> {
 
     /// The grasp of the fingers in `holding` (those of them that touch) at `q`, with the planning friction.
     ///
-    /// For what rests: regrasps, start and goals. While the object moves it is [`Task::transfer_grasp`].
+    /// For what rests: regrasps, start and goals. While the object moves it is [`Task::transfer_grasp`]. The joints of `q` must be those that
+    /// hold: where the stability test asks for them, the grasp carries what they can exert.
     pub fn grasp(&self, q: &Configuration, holding: FingerSet) -> Grasp<'a> {
         let mu = self.planning_friction();
+        self.grasp_with(q, holding, |finger, contact| self.contact_model.cone(finger, contact, mu))
+    }
+
+    /// The same with the friction coefficient `mu`, without the planner's margin: for grasps that are given.
+    pub fn grasp_with_friction(&self, q: &Configuration, holding: FingerSet, mu: f64) -> Grasp<'a> {
         self.grasp_with(q, holding, |finger, contact| self.contact_model.cone(finger, contact, mu))
     }
 
@@ -109,10 +116,18 @@ impl<'a> Task<'a> {
         cone: impl Fn(FingerIndex, &Contact) -> Cone<'a>,
     ) -> Grasp<'a> {
         let mut grasp = Grasp::new(q.X_HO.rotation.inverse() * self.g_H);
+        let bounded = self.stability.uses_efforts();
         for (finger, contact) in q.contacts.iter() {
             if let (Some(contact), true) = (contact, holding.contains(finger)) {
                 let cone = cone(finger, contact);
-                grasp.push(GraspContact { finger, p_OC: contact.p_OC, n_O: contact.n_O, cone });
+                let touch = GraspContact { finger, p_OC: contact.p_OC, n_O: contact.n_O, cone };
+                if bounded {
+                    let joints = &q.joints[finger];
+                    let efforts = EffortBounds::at(self.hand, finger, joints, &q.X_HO, &contact.n_O);
+                    grasp.push_bounded(touch, efforts);
+                } else {
+                    grasp.push(touch);
+                }
             }
         }
         grasp

@@ -1,11 +1,11 @@
 //! The forces that hold the object, state by state.
 //!
-//! S. Boyd, B. Wegbreit, "Fast computation of optimal contact forces", IEEE T-RO 2007; the program is in `regrasp-physics`.
+//! S. Boyd, B. Wegbreit, "Fast computation of optimal contact forces", IEEE T-RO 2007; `regrasp-physics` chooses them.
 
 use crate::ExportError;
 use regrasp_api::{Configuration, FingerIndex, Hand, ObjectModel, Vec3};
 use regrasp_physics::{ContactForce, Friction, Held, SimulationSettings, Stage, grasp_forces};
-use regrasp_plan::{Motion, Plan, Segment, SegmentKind};
+use regrasp_plan::{Criterion, Motion, Plan, Segment, SegmentKind};
 
 /// The forces of a whole motion, state by state in the order of [`Scene::states`].
 pub(crate) struct Forces {
@@ -16,13 +16,15 @@ pub(crate) struct Forces {
 }
 
 impl Forces {
-    /// Forces that hold the object against gravity, as far inside the friction cones that the plan claims as the joints' efforts allow.
+    /// Forces that hold the object against gravity with the least share of the friction that the plan claims within the joints' efforts; `grip` is the most
+    /// normal force of a contact (N), what the plan claims where `None`.
     pub fn new(
         plan: &Plan,
         motion: &Motion,
         (hand, object): (&dyn Hand, &ObjectModel),
+        grip: Option<f64>,
     ) -> Result<Self, ExportError> {
-        let settings = SimulationSettings::default();
+        let settings = settings(plan, grip);
         let Some(cone) = plan.claims.contact.cone else {
             let model = &plan.claims.contact.model;
             let missing =
@@ -73,7 +75,7 @@ impl Forces {
     /// What whoever exports should know.
     pub fn notes(&self) -> Vec<String> {
         let outside =
-            self.held.iter().filter(|held| held.as_ref().is_none_or(|held| held.margin <= 0.0)).count();
+            self.held.iter().filter(|held| held.as_ref().is_none_or(|held| held.share > 1.0)).count();
         match (&self.missing, outside) {
             (Some(missing), _) => vec![missing.clone()],
             (None, 0) => Vec::new(),
@@ -84,6 +86,16 @@ impl Forces {
             )],
         }
     }
+}
+
+/// The bounds of the forces: those that the plan claims to hold by, and the grip that was asked for.
+fn settings(plan: &Plan, grip: Option<f64>) -> SimulationSettings {
+    let mut settings = SimulationSettings { grip, ..SimulationSettings::default() };
+    if let Criterion::Holding(load) = &plan.claims.criterion {
+        settings.relied = load.friction_factor;
+        settings.grip = grip.or(load.max_normal_force);
+    }
+    settings
 }
 
 fn stage(segment: &Segment) -> Stage<'_> {

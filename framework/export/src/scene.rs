@@ -24,6 +24,11 @@ pub struct Scene<'a> {
 impl<'a> Scene<'a> {
     /// Prepares a plan, which need not be valid but must fit its own hand.
     pub fn new(plan: &'a Plan) -> Result<Self, ExportError> {
+        Self::with_grip(plan, None)
+    }
+
+    /// The same with at most this normal force (N, 0.01 to 1e4) at each contact; what the plan claims to hold by, or else what the joints can, where `None`.
+    pub fn with_grip(plan: &'a Plan, grip: Option<f64>) -> Result<Self, ExportError> {
         let problem = &plan.scenario.problem;
         let hand = ChainHand::new(problem.hand.clone())?;
         let object = regrasp_world::load_object(&problem.object)?;
@@ -32,7 +37,7 @@ impl<'a> Scene<'a> {
             return Err(ExportError::Empty);
         }
         let names = Names::new(&problem.hand, &problem.obstacle);
-        let forces = Forces::new(plan, &motion, (&hand, &object))?;
+        let forces = Forces::new(plan, &motion, (&hand, &object), grip)?;
         let solids = Solids::new(problem)?;
         let origins = origins(&problem.hand)?;
         Ok(Self { plan, hand, object, motion, names, forces, solids, origins })

@@ -25,11 +25,6 @@ impl Friction {
         check("gamma", self.gamma, 0.0, 1.0)
     }
 
-    /// Only a part of this friction.
-    pub(crate) fn part(&self, part: f64) -> Self {
-        Self { mu: self.mu * part, gamma: self.gamma * part }
-    }
-
     /// How long (m) the lever is with which a tangential force compares with a torque about the normal: γ/μ.
     pub(crate) fn lever(&self) -> f64 {
         self.gamma / self.mu

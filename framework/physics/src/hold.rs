@@ -1,25 +1,19 @@
 //! The efforts with which the fingers hold the object along a motion.
 
 use crate::force::{ContactForce, Friction};
-use crate::grip::{Grip, GripContact, Press, balanced, best_grip, margin};
+use crate::holding::{Balanced, Bearing, Forces, Press, Search, Smallest, share_of, smallest_share, stacked};
 use crate::settings::SimulationSettings;
+use nalgebra::Vector6;
 use regrasp_api::{
-    Configuration, FingerIndex, FingerJoints, FingerSet, Hand, ObjectModel, PerFinger, Rotation, Vec3,
+    Configuration, EffortBounds, FingerIndex, FingerJoints, FingerSet, Hand, ObjectModel, PerFinger, Vec3,
 };
 
-/// The margin (of the weight) below which a grip is a poor one, and that which is striven for with all efforts.
-///
-/// Not more than that: fingers that squeeze hard make a grasp unstable (the contacts' forces turn with the object, against the motors'
-/// stiffness), and joints at their limits have nothing left to correct with.
-const POOR: f64 = 0.1;
-const ENOUGH: f64 = 0.5;
-
-/// The parts of the friction that forces rely on, the first that gives a good grip: where fingers press hard, a margin in newtons alone would let
-/// forces slip that are one part in a hundred off their way.
-const PARTS: [f64; 2] = [0.95, 1.0];
-
-/// What part of a solved margin forces that are carried along must keep.
-const KEPT: f64 = 0.8;
+/// How much of the friction that a stage leaves over its forces may rely on, so that efforts stay away from their limits.
+const EASE: f64 = 0.25;
+/// Shares of the friction below this are not striven for: nothing slips there, and squeezing harder has a price.
+const ENOUGH: f64 = 0.3;
+/// Where even all friction holds nothing, what is tried is this much more than the smallest share that would.
+const BEYOND: f64 = 1.05;
 
 /// How the object is held at one configuration.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,141 +22,152 @@ pub struct Held {
     pub forces: PerFinger<Option<ContactForce>>,
     /// The joints' efforts that exert this (N·m; N where prismatic): Jᵀ f, 0 for fingers that do not hold. The links' weight comes on top.
     pub efforts: PerFinger<FingerJoints>,
-    /// The least distance of a force from its friction cone (N), see [`Friction::margin`], by the object's own friction. Where it is not positive, no forces
-    /// within the cones and the joints' efforts hold the object, and these are the nearest.
+    /// The largest share of the friction that a force relies on (no unit). Above 1 no forces within cones and efforts hold the object, and
+    /// these are the nearest.
+    pub share: f64,
+    /// The largest share of a joint's effort limit that the forces take (no unit).
+    pub effort_share: f64,
+    /// The least distance of a force from its friction cone (N), see [`Friction::margin`].
     pub margin: f64,
 }
 
-/// Finds the grip at one configuration after another.
+/// A grasp as its forces see it, in O.
+struct Grip {
+    fingers: Vec<FingerIndex>,
+    bounds: Vec<EffortBounds>,
+    bearings: Vec<Bearing>,
+    wanted: Vector6<f64>,
+}
+
+/// Finds the forces of whole stages.
 ///
-/// A grip that was solved is carried along while the contacts roll: its forces turn with the contacts' normals and the least change of
-/// norm balances them again. They are solved anew where that costs more than a part of the margin, or leaves the bounds.
+/// First the smallest share of the friction with which every state of the stage can be held, then for each state the analytic
+/// centre of the forces that need a little more than that: unique and continuous along the stage, inside the cones and the efforts.
 pub(crate) struct Holder<'a> {
     hand: &'a dyn Hand,
     object: &'a ObjectModel,
-    /// The object's weight in H (N).
-    weight: Vec3,
+    /// Gravity in H (m/s²).
+    g_H: Vec3,
     friction: Friction,
-    most: f64,
-    share: f64,
-    last: Option<Solved>,
-}
-
-struct Solved {
-    contacts: Vec<GripContact>,
-    grip: Grip,
-    /// The friction that its forces rely on, and their margin by it when they were solved (N); 0 where they were found with all efforts, and are not
-    /// carried along.
-    friction: Friction,
-    margin: f64,
+    press: Press,
+    relied: f64,
+    length: f64,
 }
 
 impl<'a> Holder<'a> {
-    /// For forces that rely on at most this friction, and an object of its own mass under gravity `g_H` (m/s²).
+    /// For this friction, and an object of its own mass under gravity `g_H` (m/s²).
     pub fn new(
         (hand, object, g_H): (&'a dyn Hand, &'a ObjectModel, Vec3),
         friction: Friction,
         settings: &SimulationSettings,
     ) -> Self {
-        let weight = g_H * object.mass;
-        let most = settings.grip.unwrap_or((3.0 * weight.norm()).max(2.0));
-        Self { hand, object, weight, friction, most, share: settings.effort_share, last: None }
+        let press = Press { max_normal_force: settings.grip, effort_share: settings.effort_share };
+        let length = object.mesh.radius().max(1e-6);
+        Self { hand, object, g_H, friction, press, relied: settings.relied, length }
     }
 
-    /// How the fingers of `holding` hold the object at `q`; `None` where no forces of any direction do.
-    pub fn hold(&mut self, q: &Configuration, holding: FingerSet) -> Option<Held> {
-        let contacts = self.contacts(q, holding);
-        let carried = self.last.take().and_then(|last| self.carry(last, &contacts));
-        let solved = match carried {
-            Some(carried) => carried,
-            None => self.solve(&contacts)?,
-        };
-        let forces = &solved.grip.forces;
+    /// How the fingers of `holding` hold the object in each state; `None` where no forces of any friction do.
+    pub fn stage(
+        &self,
+        states: &[Configuration],
+        holding: impl Fn(&Configuration) -> FingerSet,
+    ) -> Vec<Option<Held>> {
+        let grips =
+            |press: &Press| -> Vec<Grip> { states.iter().map(|q| self.grip(q, holding(q), press)).collect() };
+        let mut made = grips(&self.press);
+        let mut needed = needs(&made);
+        if needed.iter().any(|need| need.as_ref().is_none_or(|need| need.share > self.relied)) {
+            // Joints at their limits have nothing left to correct with, but dropping the object is worse.
+            made = grips(&Press { effort_share: 1.0, ..self.press });
+            needed = needs(&made);
+        }
+        let shares = needed.iter().flatten().map(|need| need.share).filter(|share| *share <= 1.0);
+        let most = shares.fold(ENOUGH.min(self.relied), f64::max);
+        let eased = most + EASE * (self.relied - most).max(0.0);
+        let mut from = None;
+        let each = states.iter().zip(&made).zip(&needed);
+        each.map(|((q, grip), need)| {
+            let need = need.as_ref()?;
+            let share = if need.share <= 1.0 { eased } else { need.share * BEYOND };
+            let forces = centre(grip, share, from.as_ref()).unwrap_or(need.forces);
+            from = Some(forces);
+            Some(self.held(q, grip, &forces))
+        })
+        .collect()
+    }
+
+    fn grip(&self, q: &Configuration, holding: FingerSet, press: &Press) -> Grip {
+        let to_O = q.X_HO.rotation.inverse();
+        let weight = to_O * self.g_H * self.object.mass;
+        let wanted = stacked(&-weight, &Vec3::zeros());
+        let mut grip = Grip { fingers: vec![], bounds: vec![], bearings: vec![], wanted };
+        for (finger, contact) in q.contacts.iter() {
+            let (Some(contact), true) = (contact, holding.contains(finger)) else { continue };
+            let bounds = EffortBounds::at(self.hand, finger, &q.joints[finger], &q.X_HO, &contact.n_O);
+            let r_O = contact.p_OC - self.object.p_OCm;
+            let place = (&r_O, &contact.n_O);
+            grip.bearings.push(Bearing::new(place, &self.friction, &bounds, press, self.length));
+            grip.fingers.push(finger);
+            grip.bounds.push(bounds);
+        }
+        grip
+    }
+
+    fn held(&self, q: &Configuration, grip: &Grip, forces: &Forces) -> Held {
         let mut held = Held {
             forces: PerFinger::filled(q.joints.len(), None),
             efforts: PerFinger::from_fn(q.joints.len(), |f| FingerJoints::zeros(q.joints[f].len())),
-            margin: margin(&contacts, forces, &self.friction),
+            share: share_of(&grip.bearings, forces),
+            effort_share: 0.0,
+            margin: f64::INFINITY,
         };
-        for (contact, exerted) in contacts.iter().zip(forces) {
-            held.forces[contact.finger] = Some(*exerted);
-            held.efforts[contact.finger] = contact.efforts_of(exerted);
-        }
-        self.last = Some(solved);
-        Some(held)
-    }
-
-    /// The grip that relies on the least part of the friction; for each part first one within the bounds wished for, then one that takes the
-    /// joints' whole efforts. Where even all friction and efforts give a poor one, that.
-    fn solve(&self, contacts: &[GripContact]) -> Option<Solved> {
-        let weight = self.weight.norm();
-        let mut whole = contacts.to_vec();
-        whole.iter_mut().flat_map(|contact| &mut contact.efforts).for_each(|effort| *effort /= self.share);
-        let mut last = None;
-        for friction in PARTS.map(|part| self.friction.part(part)) {
-            let solved = |grip, margin| Solved { contacts: contacts.to_vec(), grip, friction, margin };
-            let good = |grip: &Grip| grip.margin > POOR * weight;
-            let wished = best_grip(contacts, &friction, &self.weight, Press::up_to(self.most));
-            if let Some(grip) = wished.filter(good) {
-                let margin = grip.margin;
-                return Some(solved(grip, margin));
+        for (i, &finger) in grip.fingers.iter().enumerate() {
+            let in_O = grip.bearings[i].force(&forces[i]);
+            let exerted = ContactForce { force: q.X_HO.rotation * in_O.force, spin: in_O.spin };
+            let efforts = grip.bounds[i].efforts_of(&in_O.force, in_O.spin);
+            let limits = grip.bounds[i].joints().iter().map(|joint| joint.limit);
+            let taken = efforts.iter().zip(limits).map(|(effort, limit)| effort.abs() / limit);
+            held.effort_share = taken.fold(held.effort_share, f64::max);
+            if let Some(contact) = q.contacts[finger] {
+                let n_H = q.X_HO.rotation * contact.n_O;
+                held.margin = held.margin.min(self.friction.margin(&n_H, &exerted));
             }
-            let grip = best_grip(&whole, &friction, &self.weight, Press::enough_for(ENOUGH * weight));
-            let is_good = grip.as_ref().is_some_and(good);
-            last = grip.map(|grip| solved(grip, 0.0)).or(last);
-            if is_good {
-                break;
+            held.forces[finger] = Some(exerted);
+            held.efforts[finger] = efforts;
+        }
+        held
+    }
+}
+
+/// The smallest share of each state, as far as it tells of the stage: a state that can do with what an earlier one needs counts with the
+/// share of the forces that were found.
+fn needs(grips: &[Grip]) -> Vec<Option<Smallest>> {
+    let mut most: Option<f64> = None;
+    let mut before: Option<Smallest> = None;
+    let each = grips.iter().map(|grip| {
+        let bearings = &grip.bearings[..];
+        if let (Some(share), Some(last)) = (most.filter(|share| *share <= 1.0), &before) {
+            let search = Search { bearings, share };
+            let start = if search.inside(&last.forces) { last.forces } else { search.start() };
+            if let Balanced::Yes(forces) = search.any(&start, &grip.wanted) {
+                before = Some(Smallest { share: share_of(bearings, &forces), forces });
+                return before;
             }
         }
-        last
-    }
+        let found = smallest_share(bearings, &grip.wanted, most.filter(|s| *s <= 1.0).unwrap_or(1.0))?;
+        most = Some(most.unwrap_or(0.0).max(found.share));
+        before = Some(found);
+        Some(found)
+    });
+    each.collect()
+}
 
-    /// What was solved before, as far as it still serves.
-    fn carry(&self, last: Solved, contacts: &[GripContact]) -> Option<Solved> {
-        let fingers =
-            |contacts: &[GripContact]| contacts.iter().map(|c| c.finger).collect::<Vec<FingerIndex>>();
-        if last.contacts == contacts {
-            return Some(last);
-        }
-        if last.margin <= 0.0 || fingers(&last.contacts) != fingers(contacts) {
-            return None;
-        }
-        let turned =
-            last.contacts.iter().zip(contacts).zip(&last.grip.forces).map(|((old, new), exerted)| {
-                let turn = Rotation::rotation_between(&old.n, &new.n).unwrap_or_else(Rotation::identity);
-                ContactForce { force: turn * exerted.force, spin: exerted.spin }
-            });
-        let turned: Vec<ContactForce> = turned.collect();
-        let forces = balanced(contacts, &turned, &last.friction, &self.weight)?;
-        let now = margin(contacts, &forces, &last.friction);
-        let bounded = contacts.iter().zip(&forces).all(|(contact, force)| contact.allows(force, self.most));
-        let good = bounded && now >= KEPT * last.margin;
-        let grip = Grip { forces, margin: now };
-        good.then(|| Solved { contacts: contacts.to_vec(), grip, ..last })
-    }
-
-    /// The contacts as the program of forces sees them, in H.
-    fn contacts(&self, q: &Configuration, holding: FingerSet) -> Vec<GripContact> {
-        let touching = q.contacts.iter().filter_map(|(finger, contact)| Some((finger, (*contact)?)));
-        let held = touching.filter(|(finger, _)| holding.contains(*finger));
-        held.map(|(finger, contact)| {
-            let n = q.X_HO.rotation * contact.n_O;
-            let joints = &self.hand.finger(finger).joints;
-            let tip = self.hand.tip_kinematics(finger, &q.joints[finger]);
-            let lever = n * self.hand.fingertip_radius();
-            // The material point lies at -r n from the centre: v = J_v q' + J_w q' × (-r n).
-            let column = |j: usize| -> Vec3 {
-                let (v, w): (Vec3, Vec3) = (tip.J_v.column(j).into(), tip.J_w.column(j).into());
-                v + lever.cross(&w)
-            };
-            GripContact {
-                finger,
-                r: q.X_HO.rotation * (contact.p_OC - self.object.p_OCm),
-                n,
-                columns: (0..joints.len()).map(column).collect(),
-                spins: (0..joints.len()).map(|j| n.dot(&tip.J_w.column(j))).collect(),
-                efforts: joints.iter().map(|joint| joint.effort * self.share).collect(),
-            }
-        })
-        .collect()
+/// The centre of the forces that need at most `share` of the friction, from those of the state before where they are inside.
+fn centre(grip: &Grip, share: f64, from: Option<&Forces>) -> Option<Forces> {
+    let search = Search { bearings: &grip.bearings, share };
+    let start = from.filter(|from| search.inside(from)).copied();
+    match search.centre(&start.unwrap_or_else(|| search.start()), &grip.wanted) {
+        Balanced::Yes(forces) => Some(forces),
+        _ => None,
     }
 }

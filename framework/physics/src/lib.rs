@@ -1,4 +1,4 @@
-//! Chooses grasp forces by a conic program, and simulates transfers and whole motions in rapier3d: the hand as jointed bodies driven by motors,
+//! Chooses grasp forces within friction cones and the joints' efforts, and simulates transfers and whole motions in rapier3d: the hand as jointed bodies driven by motors,
 //! the object free under gravity.
 //!
 //! [`grasp_forces`] needs no simulator; everything else is behind the feature `rapier`.
@@ -8,7 +8,7 @@
 //!   with a stiffness and damping whose effort saturates at the joint's limit;
 //! - the fingertips as balls on the object's mesh, one contact each at the closest point, with Coulomb friction; the object with its mass, inertia
 //!   and gravity;
-//! - the control: positions and speeds of the plan, and fed forward the efforts of a grip that a small conic program chose (q* = q + K⁻¹ Jᵀ f). Nothing looks at
+//! - the control: positions and speeds of the plan, and fed forward the efforts of a grip (q* = q + K⁻¹ Jᵀ f). Nothing looks at
 //!   where the object is: it stays on its path because the grip's stiffness keeps it there.
 //!
 //! What is left out: weight of the links (the motors are taken to hold it), true masses of the links (nominal ones), shapes of the links (plans are free of
@@ -24,8 +24,8 @@ mod finger;
 #[cfg(feature = "rapier")]
 mod fixed;
 mod force;
-mod grip;
 mod hold;
+mod holding;
 #[cfg(feature = "rapier")]
 mod pace;
 #[cfg(feature = "rapier")]
@@ -44,6 +44,9 @@ mod transfer;
 pub use error::PhysicsError;
 pub use force::{ContactForce, Friction};
 pub use hold::Held;
+pub use holding::{
+    Answer, Balanced, Bearing, Bearings, Exerted, Forces, HeldLoad, Press, Smallest, smallest_share,
+};
 #[cfg(feature = "rapier")]
 pub use pace::Pace;
 #[cfg(feature = "rapier")]

@@ -176,14 +176,15 @@ impl Run<'_> {
     /// The stage's schedule, forces passing over first, up to where no forces hold the object; and the least margin of a grip (N).
     fn knots(&mut self, stage: &Stage<'_>, is_last: bool) -> (Vec<Knot>, f64) {
         let Scene { hand, object, g_H, .. } = self.scene;
-        let mut holder =
+        let holder =
             Holder::new((hand, object, g_H), Friction::point(object.friction), &self.settings.simulation);
         let start = self.clock + self.settings.shift;
         let first = stage.times.first().copied().unwrap_or(0.0);
         let mut least = f64::INFINITY;
-        let made = stage.states.iter().zip(stage.times).map_while(|(q, time)| {
+        let held = holder.stage(stage.states, |q| stage.holding(q));
+        let made = stage.states.iter().zip(held).zip(stage.times).map_while(|((q, held), time)| {
             let holding = stage.holding(q);
-            let Held { efforts: feed, margin, .. } = holder.hold(q, holding)?;
+            let Held { efforts: feed, margin, .. } = held?;
             least = least.min(margin);
             let time = start + (time - first) * self.settings.slowdown;
             Some(Knot { time, X_HO: q.X_HO, joints: q.joints, feed, holding })

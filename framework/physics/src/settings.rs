@@ -17,10 +17,12 @@ pub struct SimulationSettings {
     pub mass: Option<f64>,
     /// Time step (s), in 1e-5 to 0.02.
     pub time_step: f64,
-    /// Most normal force of one contact (N), in 0.01 to 1e4; the greater of 2 N and three times the object's weight where `None`.
+    /// Most normal force of one contact (N), in 0.01 to 1e4; where `None`, what the joints can.
     pub grip: Option<f64>,
     /// What part of its effort limit a joint may use for the grasp, in 0.01 to 1.
     pub effort_share: f64,
+    /// The share of the friction that forces rely on at most, where they can; 0.01 to 1.
+    pub relied: f64,
 }
 
 impl Default for SimulationSettings {
@@ -34,6 +36,7 @@ impl Default for SimulationSettings {
             time_step: 5e-4,
             grip: None,
             effort_share: 0.8,
+            relied: 1.0,
         }
     }
 }
@@ -48,7 +51,8 @@ impl SimulationSettings {
         self.mass.map_or(Ok(()), |mass| check("mass", mass, 1e-6, 1e6))?;
         check("time_step", self.time_step, 1e-5, 0.02)?;
         self.grip.map_or(Ok(()), |grip| check("grip", grip, 0.01, 1e4))?;
-        check("effort_share", self.effort_share, 0.01, 1.0)
+        check("effort_share", self.effort_share, 0.01, 1.0)?;
+        check("relied", self.relied, 0.01, 1.0)
     }
 }
 

@@ -28,12 +28,12 @@ impl Stage<'_> {
     }
 }
 
-/// The forces that hold the object in every state of a motion, stage by stage: those farthest from slipping that the joints can exert.
+/// The forces that hold the object in every state of a motion, stage by stage: those that need least of the friction within the joints' efforts.
 ///
-/// `friction` is what there is: the object's, or what a plan claims; the forces rely on a little less where they can. Of the settings only `grip` and
-/// `effort_share` matter. `g_H` is the acceleration of gravity (m/s², in H). A state's entry is `None` where the grasp cannot exert every wrench
-/// even without regard to friction. From one stage to the next the forces jump, though the state is the same: other fingers hold; let them
-/// pass over while everything rests. Cost: 0.1 ms for each program that is solved, one in some ten states.
+/// `friction` is what there is: the object's, or what a plan claims. Of the settings only `grip` and `effort_share` matter. `g_H` is the
+/// acceleration of gravity (m/s², in H). A state's entry is `None` where no forces hold the object, whatever the friction. From one
+/// stage to the next the forces jump, though the state is the same: other fingers hold; let them pass over while everything rests. Any
+/// blend of the two is balanced, within the cones and the efforts, since all of these are convex.
 pub fn grasp_forces(
     (hand, object, g_H): (&dyn Hand, &ObjectModel, Vec3),
     friction: Friction,
@@ -43,8 +43,8 @@ pub fn grasp_forces(
     settings.validate()?;
     friction.validate()?;
     let one = |stage: &Stage<'_>| {
-        let mut holder = Holder::new((hand, object, g_H), stage.friction(friction), settings);
-        stage.states.iter().map(|q| holder.hold(q, stage.holding(q))).collect()
+        let holder = Holder::new((hand, object, g_H), stage.friction(friction), settings);
+        holder.stage(stage.states, |q| stage.holding(q))
     };
     Ok(stages.iter().map(one).collect())
 }

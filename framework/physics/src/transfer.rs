@@ -37,16 +37,14 @@ impl TransferSimulator {
         mu: f64,
         bounds: &Bounds,
     ) -> Outcome {
-        let mut holder = Holder::new((hand, object, g_H), Friction::point(mu), &self.settings);
+        let holder = Holder::new((hand, object, g_H), Friction::point(mu), &self.settings);
         let times = pace.times(hand, states);
-        let knot = |(q, &time): (&Configuration, &f64)| {
-            let Held { efforts: feed, margin, .. } = holder.hold(q, q.holding())?;
-            if margin <= 0.0 {
-                return None;
-            }
+        let knot = |((q, held), &time): ((&Configuration, Option<Held>), &f64)| {
+            let Held { efforts: feed, .. } = held.filter(|held| held.share <= 1.0)?;
             Some(Knot { time, X_HO: q.X_HO, joints: q.joints, feed, holding: q.holding() })
         };
-        let mut knots: Vec<Knot> = states.iter().zip(&times).map_while(knot).collect();
+        let held = holder.stage(states, Configuration::holding);
+        let mut knots: Vec<Knot> = states.iter().zip(held).zip(&times).map_while(knot).collect();
         let held = knots.len();
         if let Some(last) = knots.last() {
             knots.push(Knot { time: last.time + HOLD, ..last.clone() });

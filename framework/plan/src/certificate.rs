@@ -73,4 +73,7 @@ pub struct Holds {
     pub mass: Extreme,
     /// The largest disturbing force at the centre of mass, in any direction, at which it does (N).
     pub disturbance: Extreme,
+    /// The largest share of its limit that a joint's effort takes (no unit).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effort: Option<Extreme>,
 }

@@ -58,6 +58,45 @@ impl Admissible for Leavable {
     }
 }
 
+/// Admits configurations in which a motion may begin or end.
+///
+/// The reduction property asks for nodes that can be left in several ways; an end is left in one. So n - 1 fingers are enough, or n of which one can
+/// be lifted: the rest of the hand comes to the object, or goes from it, by regrasps. What is lost is that the end lies in GS_n: paths in GS_n cannot
+/// begin there, and the search joins it by transfers and regrasps alone.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Holdable;
+
+impl Admissible for Holdable {
+    fn admit_finger(
+        &self,
+        task: &Task<'_>,
+        q: &Configuration,
+        finger: FingerIndex,
+        placed: FingerSet,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError> {
+        Leavable.admit_finger(task, q, finger, placed, context)
+    }
+
+    fn admit_grasp(
+        &self,
+        task: &Task<'_>,
+        q: &Configuration,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError> {
+        let grasp = task.grasp(q, FingerSet::first(q.contacts.len()));
+        if !task.stability.test(&grasp, &mut Default::default(), context)?.is_stable() {
+            return Ok(Some(Reason::Stability));
+        }
+        let fewest = task.contact_model.fewest_contacts();
+        if grasp.contacts().len() > fewest && task.stability.liftable(&grasp, 1, context)?.is_empty() {
+            return Ok(Some(Reason::Liftable));
+        }
+        let holds = holds_in_transfers(task, q, &grasp, context)?;
+        Ok(if holds { None } else { Some(Reason::Stability) })
+    }
+}
+
 /// Whether the grasp that is stable at rest is still so while the object moves.
 fn holds_in_transfers(
     task: &Task<'_>,

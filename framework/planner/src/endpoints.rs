@@ -5,8 +5,8 @@ use crate::foresight::outlook;
 use crate::session::{Call, Session, Work};
 use crate::shortest_path::Length;
 use regrasp_api::{
-    CallError, Configuration, Contact, FingerGrasp, FingerIndex, FingerJoints, FingerSet, GraspContact,
-    PerFinger, Pose, PoseRequest, Tally, Task,
+    CallError, Configuration, Contact, FingerGrasp, FingerIndex, FingerJoints, FingerSet, PerFinger, Pose,
+    PoseRequest, Tally, Task,
 };
 
 /// How far a given contact point may lie from the surface (m).
@@ -100,12 +100,7 @@ fn on_surface(task: &Task<'_>, p_OC: regrasp_api::Vec3) -> Result<Contact, Strin
 /// Whether the grasp is stable with the object's own friction (no planner's margin).
 fn stable(work: &mut Work<'_>, q: &Configuration) -> Result<bool, CallError> {
     let task = work.task;
-    let mut grasp = regrasp_api::Grasp::new(q.X_HO.rotation.inverse() * task.g_H);
-    for (finger, contact) in q.contacts.iter() {
-        let Some(contact) = contact else { continue };
-        let cone = task.contact_model.cone(finger, contact, task.object.friction);
-        grasp.push(GraspContact { finger, p_OC: contact.p_OC, n_O: contact.n_O, cone });
-    }
+    let grasp = task.grasp_with_friction(q, q.holding(), task.object.friction);
     Ok(!grasp.contacts().is_empty()
         && task.stability.test(&grasp, &mut Default::default(), &mut work.context)?.is_stable())
 }

@@ -34,7 +34,7 @@ mod solve;
 mod steps;
 mod view;
 
-pub use admissible::Leavable;
+pub use admissible::{Holdable, Leavable};
 pub use error::{End, PlanError};
 pub use record::{EdgeRecord, Fate, GraphRecord};
 pub use report::{Clock, Outcome, Progress, Silent, Status, Stuck};

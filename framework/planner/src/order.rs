@@ -135,7 +135,7 @@ impl<'a> Order<'a> {
     fn may_lift(&self, work: &mut Work<'_>, left: FingerSet, finger: FingerIndex) -> Result<bool, CallError> {
         let mut q = self.from.clone();
         for other in q.contacts.fingers().filter(|&other| !left.contains(other)) {
-            q.contacts[other] = self.to.contacts[other];
+            (q.contacts[other], q.joints[other]) = (self.to.contacts[other], self.to.joints[other]);
         }
         let rest = FingerSet::first(q.contacts.len()).without(finger);
         let grasp = work.task.grasp(&q, rest);

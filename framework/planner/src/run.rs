@@ -54,6 +54,9 @@ pub(crate) struct Run<'a> {
     pub task: Task<'a>,
     pub poses: &'a [Pose],
     pub choices: Vec<FingerSet>,
+    /// The task, and the sets of fingers, for ends at which no grasp can be left in several ways.
+    pub end_task: Task<'a>,
+    pub end_choices: Vec<FingerSet>,
     pub graph: Graph,
     pub draft: Draft,
     pub statistics: Statistics,
@@ -151,10 +154,22 @@ impl Run<'_> {
         for _ in 0..count {
             found.extend(finder.next(self.session, &self.task, &self.choices, &mut self.tally)?);
         }
+        if found.is_empty() {
+            found = self.weaker_grasps(&mut finder, count)?;
+        }
         endpoints::sort_by_ease(&self.task, &mut found, neighbours(self.poses, place));
         found.truncate(if end == End::Start { 1 } else { count });
         let nodes = found.into_iter().map(|q| self.graph.add_node(q, origin)).collect();
         Ok((nodes, Some(finder)))
+    }
+
+    /// Grasps in which a motion may begin or end, of n - 1 fingers too: where none was found that could be a node anywhere.
+    fn weaker_grasps(&mut self, finder: &mut Finder, count: usize) -> Result<Vec<Configuration>, CallError> {
+        let mut found = Vec::new();
+        for _ in 0..count {
+            found.extend(finder.next(self.session, &self.end_task, &self.end_choices, &mut self.tally)?);
+        }
+        Ok(found)
     }
 
     fn given(&mut self, end: End, X_HO: Pose, grasp: &[FingerGrasp]) -> Result<Configuration, PlanError> {

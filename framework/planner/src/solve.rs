@@ -1,6 +1,6 @@
 //! A whole run: start and goals, one search a goal, smoothing, timing.
 
-use crate::admissible::Leavable;
+use crate::admissible::{Holdable, Leavable};
 use crate::draft::Draft;
 use crate::error::{End, PlanError};
 use crate::graph::Graph;
@@ -32,7 +32,9 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
         workspace: request.problem.sampling_box(&poses),
         landmarks: &poses,
     };
-    let choices = finger_choices(&task)?;
+    let holdable = GuardedService(&Holdable as &dyn Admissible);
+    let choices = finger_choices(&task, 1)?;
+    let end_choices = finger_choices(&task, 0)?;
     let pool = pool(request.threads);
     let session = Session {
         plugins: Drivers::of(&request.plugins),
@@ -46,6 +48,8 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
         task,
         poses: &poses,
         choices,
+        end_task: Task { admissible: &holdable, ..task },
+        end_choices,
         graph: Graph::new(request.object.mesh.radius()),
         draft: Draft::default(),
         statistics: Statistics::default(),
@@ -74,15 +78,15 @@ fn poses(problem: &Problem) -> Result<Vec<Pose>, PlanError> {
     Ok(poses)
 }
 
-/// The sets of fingers that may hold the object: GS_n and beyond.
-fn finger_choices(task: &Task<'_>) -> Result<Vec<FingerSet>, PlanError> {
+/// The sets of fingers that may hold the object, with at least `more` than the fewest that can be stable: 1 gives GS_n and beyond.
+fn finger_choices(task: &Task<'_>, more: usize) -> Result<Vec<FingerSet>, PlanError> {
     let (fingers, fewest) = (task.hand.finger_count(), task.contact_model.fewest_contacts());
     if fingers < fewest + 1 {
         return Err(PlanError::TooFewFingers { fingers, fewest });
     }
     let all = FingerSet::first(fingers);
     let subsets = (0..=u8::MAX).map(FingerSet::from_bits).filter(|&set| set.intersection(all) == set);
-    Ok(subsets.filter(|set| set.len() > fewest).collect())
+    Ok(subsets.filter(|set| set.len() >= fewest + more).collect())
 }
 
 fn pool(threads: usize) -> Option<rayon::ThreadPool> {

@@ -41,7 +41,7 @@ impl Setup<'_> {
             "format": FORMAT,
             "seed": seed,
             "breach": breach.json(),
-            "scenario": self.resolved_scenario(),
+            "scenario": self.resolved_scenario(&self.scenario.problem),
         });
         AuditCase { breach, file }
     }

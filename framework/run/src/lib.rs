@@ -4,6 +4,7 @@
 mod audit;
 mod cones;
 mod error;
+mod forces;
 mod plan_file;
 pub mod scenario;
 mod setup;

@@ -2,6 +2,7 @@
 
 use crate::cones::Cones;
 use crate::{RunError, Setup};
+use regrasp_api::{Criterion, FrictionFactor, HoldLoad, Problem};
 use regrasp_plan::{
     Claims, ContactClaim, Format, MarginFrame, Plan, PluginChoice, ResolvedScenario, StoppedBy, TransferLaw,
     VERSION,
@@ -10,9 +11,10 @@ use regrasp_planner::Outcome;
 use serde_json::Value;
 
 impl Setup<'_> {
-    /// The plan file of an outcome, without a certificate; without segments where no goal was reached.
+    /// The plan file of an outcome of this problem, which is the scenario's up to the share of the friction that it was planned with; without a certificate; without segments where no goal was reached.
     pub fn plan_file(
         &self,
+        problem: &Problem,
         outcome: &Outcome,
         seed: u64,
         stopped_by: Option<StoppedBy>,
@@ -20,12 +22,13 @@ impl Setup<'_> {
         let cones =
             Cones::of(&outcome.motion, self.plugins.contact_model.as_ref(), self.scenario.object.friction);
         let mut segments = regrasp_plan::records(&outcome.motion, self.hand())?;
-        let mut claims = self.claims(&cones);
+        let mut claims = self.claims(problem, &cones);
         claims.contact.cones = cones.record(&mut segments);
+        self.write_forces(problem, &claims, &outcome.motion, &mut segments);
         Ok(Plan {
             format: Format::RegraspPlan,
             version: VERSION,
-            scenario: self.resolved_scenario(),
+            scenario: self.resolved_scenario(problem),
             seed,
             versions: [("regrasp".to_owned(), env!("CARGO_PKG_VERSION").to_owned())].into(),
             object: None,
@@ -39,26 +42,36 @@ impl Setup<'_> {
         })
     }
 
-    pub(super) fn resolved_scenario(&self) -> ResolvedScenario {
+    pub(super) fn resolved_scenario(&self, problem: &Problem) -> ResolvedScenario {
         let plugin = |choice: &regrasp_host::Choice| PluginChoice {
             id: choice.id.clone(),
             settings: Value::Object(choice.settings.clone()),
         };
         ResolvedScenario {
             name: self.scenario.name.clone(),
-            problem: self.scenario.problem.clone(),
+            problem: problem.clone(),
             plugins: self.choices().iter().map(|(slot, choice)| (slot, plugin(choice))).collect(),
         }
     }
 
     /// What the plan claims, but for the cones of contacts that share none.
-    fn claims(&self, cones: &Cones) -> Claims {
+    fn claims(&self, problem: &Problem, cones: &Cones) -> Claims {
         let model = self.choices().choice(regrasp_api::Slot::ContactModel).id.clone();
         Claims {
             contact: ContactClaim { model, cone: cones.shared(), cones: Vec::new() },
-            criterion: self.plugins.stability.criterion(),
+            criterion: criterion(self.plugins.stability.criterion(), problem),
             transfer_law: TransferLaw::of_fingertips(self.hand().fingertip()),
             margin: MarginFrame::of_object(&self.scenario.object),
         }
+    }
+}
+
+/// The test's criterion, with the share of the friction that was planned with.
+fn criterion(of_test: Criterion, problem: &Problem) -> Criterion {
+    match (of_test, problem.hold.map(|hold| hold.friction_factor)) {
+        (Criterion::Holding(load), Some(FrictionFactor::Share(friction_factor))) => {
+            Criterion::Holding(HoldLoad { friction_factor, ..load })
+        }
+        (criterion, _) => criterion,
     }
 }

@@ -4,7 +4,10 @@ use crate::RunError;
 use crate::error;
 use crate::scenario::{Scenario, ScenarioError};
 use regrasp_abi::GuardedService;
-use regrasp_api::{Clearance, Hand, Interrupt, Parts, Pose, PoseDescription, PoseError, Refuse, Vec3};
+use regrasp_api::{
+    Clearance, FrictionFactor, Hand, HoldDescription, Interrupt, Parts, Pose, PoseDescription, PoseError,
+    Problem, Refuse, Vec3,
+};
 use regrasp_host::{Choices, PluginSet, Registry, Source};
 use regrasp_plan::{Plan, StoppedBy};
 use regrasp_planner::{Clock, Outcome, PlanError, Progress, Request, Status, Stuck};
@@ -163,14 +166,53 @@ impl<'a> Setup<'a> {
         }
     }
 
+    /// Plans for one share of the friction after the other where `[hold]` asks for as little as can be: the last plan that comes
+    /// about is the one that needs least.
     fn plan_and_verify(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Run, RunError> {
         let begin = options.clock.seconds();
-        let outcome = self.solve(solve, options)?;
+        let mut best: Option<Run> = None;
+        for problem in self.problems() {
+            let run = self.plan_one(&problem, solve, options)?;
+            let good = run.outcome.status == Status::Solved && run.is_verified();
+            if best.is_some() && !good {
+                break;
+            }
+            best = Some(run);
+            if !good {
+                break;
+            }
+        }
+        let mut run = best.expect("there is a share of the friction to plan with");
+        run.planning_s = options.clock.seconds() - begin - run.verification_s;
+        Ok(run)
+    }
+
+    /// The problem with each share of the friction that it is to be planned with in turn.
+    fn problems(&self) -> Vec<Problem> {
+        let problem = &self.scenario.problem;
+        let Some(hold) = problem.hold else { return vec![problem.clone()] };
+        let planned = |&share: &f64| {
+            let mut problem = problem.clone();
+            problem.hold = Some(HoldDescription { friction_factor: FrictionFactor::Share(share), ..hold });
+            problem.limits.resolution.friction_margin = share;
+            problem
+        };
+        hold.friction_factor.shares().iter().map(planned).collect()
+    }
+
+    fn plan_one(
+        &self,
+        problem: &Problem,
+        solve: Solve<'_>,
+        options: &RunOptions<'_>,
+    ) -> Result<Run, RunError> {
+        let begin = options.clock.seconds();
+        let outcome = self.solve(problem, solve, options)?;
         let planned = options.clock.seconds();
         let stopped_by = stopped_by(&outcome, options.stop);
         let (mut plan, mut verdict) = (None, None);
         if !outcome.goal_ends.is_empty() {
-            let mut file = self.plan_file(&outcome, options.seed, stopped_by)?;
+            let mut file = self.plan_file(problem, &outcome, options.seed, stopped_by)?;
             let judged = regrasp_verify::verify(&file);
             file.certificate = judged.certificate.clone();
             (plan, verdict) = (Some(file), Some(judged));
@@ -186,11 +228,16 @@ impl<'a> Setup<'a> {
         })
     }
 
-    fn solve(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Outcome, RunError> {
+    fn solve(
+        &self,
+        problem: &Problem,
+        solve: Solve<'_>,
+        options: &RunOptions<'_>,
+    ) -> Result<Outcome, RunError> {
         let (hand, clearance) = (self.hand(), &self.clearance as &dyn Clearance);
         let guarded = (GuardedService(hand), GuardedService(clearance));
         let request = Request {
-            problem: &self.scenario.problem,
+            problem,
             hand: if self.has_loaded { &guarded.0 } else { hand },
             clearance: if self.has_loaded { &guarded.1 } else { clearance },
             object: &self.scenario.object,

@@ -1,7 +1,7 @@
 //! Whether what the plan claims of its contacts agrees with its scenario.
 
 use crate::verdict::{Check, Gauge};
-use regrasp_api::{ObjectModel, Slot};
+use regrasp_api::{FrictionFactor, HoldLoad, ObjectModel, Slot};
 use regrasp_plan::{ConeClaim, Criterion, MarginFrame, Place, Plan, TransferLaw};
 
 /// The contact models that the verifier knows.
@@ -9,6 +9,8 @@ const KNOWN: [&str; 3] = ["contact-model/pcwf", "contact-model/frictionless", "c
 
 /// The stability test that holds a load.
 const EQUILIBRIUM: &str = "stability-test/equilibrium";
+/// The stability test that holds a load within the joints' efforts.
+const HOLDING: &str = "stability-test/holding";
 /// The stability tests that decide closure.
 const CLOSURE: [&str; 4] = [
     "stability-test/force-closure",
@@ -90,6 +92,10 @@ fn wrong_criterion(plan: &Plan) -> Option<String> {
     let id = choice.map_or("", |choice| choice.id.as_str());
     let claimed = &plan.claims.criterion;
     match claimed {
+        Criterion::Holding(load) => wrong_holding(plan, id, load),
+        _ if id == HOLDING => {
+            Some(format!("the scenario's test is `{id}`, and the plan claims something else"))
+        }
         Criterion::Closure if id == EQUILIBRIUM => {
             Some(format!("closure is claimed, the scenario's test is `{id}`"))
         }
@@ -107,6 +113,38 @@ fn wrong_criterion(plan: &Plan) -> Option<String> {
         Criterion::Equilibrium(_) => None,
         _ => Some("a criterion is claimed that cannot be checked".into()),
     }
+}
+
+/// What is wrong with the claim that a load is held: it must be no less than what the scenario's test and its `hold` ask for.
+fn wrong_holding(plan: &Plan, id: &str, load: &HoldLoad) -> Option<String> {
+    if CLOSURE.contains(&id) || id == EQUILIBRIUM {
+        return Some(format!("holding is claimed, the scenario's test is `{id}`"));
+    }
+    let settings = plan.scenario.plugins.get(&Slot::StabilityTest).map(|choice| &choice.settings);
+    let set = |key: &str| settings.and_then(|settings| settings.get(key));
+    let number = |key: &str| set(key).and_then(|value| value.as_f64());
+    let mut asked = HoldLoad {
+        weight: set("weight").and_then(|value| value.as_bool()).unwrap_or(true),
+        friction_factor: number("friction_factor").unwrap_or(1.0),
+        disturbance_force: number("disturbance_force").unwrap_or(0.0),
+        disturbance_torque: number("disturbance_torque").unwrap_or(0.0),
+        max_normal_force: number("max_normal_force"),
+    };
+    if let Some(hold) = &plan.scenario.problem.hold {
+        if let FrictionFactor::Share(share) = hold.friction_factor {
+            asked.friction_factor = share;
+        }
+        asked.weight |= hold.weight;
+        asked.disturbance_force = asked.disturbance_force.max(hold.disturbance[0]);
+        asked.disturbance_torque = asked.disturbance_torque.max(hold.disturbance[1]);
+    }
+    let most = |load: &HoldLoad| load.max_normal_force.unwrap_or(f64::INFINITY);
+    let agrees = (load.weight || !asked.weight)
+        && load.friction_factor <= asked.friction_factor
+        && load.disturbance_force >= asked.disturbance_force
+        && load.disturbance_torque >= asked.disturbance_torque
+        && most(load) <= most(&asked);
+    (!agrees).then(|| "less is claimed to be held than the scenario asks for".into())
 }
 
 fn frame_agrees(claimed: &MarginFrame, object: &ObjectModel) -> bool {

@@ -1,5 +1,7 @@
 //! The verifier's own forward kinematics, straight from the hand's description.
 
+use crate::stability::Row;
+use crate::track::Frames;
 use nalgebra::{Translation3, Unit};
 use regrasp_api::{
     FingerDescription, HandDescription, JointDescription, JointKind, MAX_FINGER_JOINTS, MAX_FINGERS, Pose,
@@ -46,6 +48,7 @@ pub(crate) struct Joint {
     pub(crate) upper: f64,
     pub(crate) velocity: f64,
     pub(crate) acceleration: f64,
+    pub(crate) effort: f64,
 }
 
 impl Chains {
@@ -70,6 +73,25 @@ impl Chains {
     pub(crate) fn owner(&self, joint: usize) -> (usize, usize) {
         let finger = self.fingers.iter().rposition(|chain| chain.first <= joint).unwrap_or(0);
         (finger, joint - self.fingers[finger].first)
+    }
+
+    /// What the joints of a finger can do at its contact at `p_OC` (m) with the inward unit normal `n_O`.
+    ///
+    /// A revolute joint moves the fingertip's point at p with axis × (p - origin), a prismatic one with its axis.
+    pub(crate) fn rows(&self, finger: usize, frames: &Frames, p_OC: &Vec3, n_O: &Vec3) -> Vec<Row> {
+        let chain = &self.fingers[finger];
+        let to_O = frames.X_HO.rotation.inverse();
+        let p_HC = frames.X_HO.rotation * p_OC + frames.X_HO.translation.vector;
+        let row = |(j, joint): (usize, &Joint)| {
+            let X_HJ = &frames.X_HL[chain.first + j];
+            let axis_H = X_HJ.rotation * joint.axis.into_inner();
+            let (velocity_H, turn_O) = match joint.kind {
+                JointKind::Revolute => (axis_H.cross(&(p_HC - X_HJ.translation.vector)), to_O * axis_H),
+                JointKind::Prismatic => (axis_H, Vec3::zeros()),
+            };
+            Row { column_O: to_O * velocity_H, spin: turn_O.dot(n_O), limit: joint.effort }
+        };
+        chain.joints.iter().enumerate().map(row).collect()
     }
 
     /// Every joint, counted through.
@@ -152,15 +174,16 @@ impl Joint {
         if !(axis.norm().is_finite() && axis.norm() > 1e-9) {
             return Err(named("`axis` must be finite and not zero"));
         }
-        let limits = [joint.lower, joint.upper, joint.velocity, joint.acceleration];
-        let positive = joint.velocity > 0.0 && joint.acceleration > 0.0;
+        let limits = [joint.lower, joint.upper, joint.velocity, joint.acceleration, joint.effort];
+        let positive = joint.velocity > 0.0 && joint.acceleration > 0.0 && joint.effort > 0.0;
         if !(limits.iter().all(|x| x.is_finite()) && positive && joint.lower <= joint.upper) {
             return Err(named("its limits must be finite, in order, and positive for the rates"));
         }
         let (velocity, acceleration) = (joint.velocity, joint.acceleration);
         let (lower, upper) = (joint.lower, joint.upper);
         let axis = Unit::new_normalize(axis);
-        Ok(Self { kind: joint.kind, X_PJ, axis, lower, upper, velocity, acceleration })
+        let effort = joint.effort;
+        Ok(Self { kind: joint.kind, X_PJ, axis, lower, upper, velocity, acceleration, effort })
     }
 }
 

@@ -5,12 +5,12 @@ use crate::contact_checks::{ContactChecks, Touch};
 use crate::hand::Chains;
 use crate::lift::LiftCheck;
 use crate::scene::Scene;
-use crate::stability::StabilityCheck;
+use crate::stability::{HoldingCheck, HoldsCheck, StabilityCheck};
 use crate::track::{self, Frames, Leg, SAMPLES};
 use crate::verdict::{Gauge, Verdict};
 use crate::{claims, ends, motion_checks};
 use regrasp_api::{MAX_FINGERS, ObjectModel, ObjectShape, Problem, Tolerances, Vec3};
-use regrasp_plan::{Place, Plan, PlanCertificate};
+use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 
 /// Verifies a plan. Whatever the plan holds, there is a verdict.
 ///
@@ -33,6 +33,7 @@ use regrasp_plan::{Place, Plan, PlanCertificate};
 /// | `lift`, `touch-travel` | a moving fingertip rises until it is lifted, and does not slide while it touches |
 /// | `clearance` | every pair that may not touch keeps its distance, also between the samples |
 /// | `stability` | the fingers that hold prove force closure, or what else the plan claims: forces that hold the load, at every sample; in a regrasp the others do, both ends included |
+/// | `forces` | where the plan records forces: they belong to the fingers that hold, balance the object's weight, and keep to what the plan claims to hold by |
 /// | `claims` | the contacts and the criterion claimed agree with the scenario |
 /// | `start`, `goals`, `complete` | the plan starts at the start, reaches the goals that it claims, and these are all |
 ///
@@ -100,6 +101,9 @@ struct Sampled<'w> {
     clearance: ClearanceCheck<'w>,
     lift: LiftCheck<'w>,
     stability: StabilityCheck,
+    /// In its place where the plan claims that joints' efforts hold the object; `None` within where the claim has no meaning.
+    holding: Option<Option<HoldingCheck>>,
+    holds: Option<HoldsCheck>,
 }
 
 impl Walk<'_> {
@@ -113,6 +117,8 @@ impl Walk<'_> {
             clearance: ClearanceCheck::new(self.hand, self.scene, tolerances.clearance),
             lift: LiftCheck::new(self.hand, self.scene, tolerances, lift),
             stability: StabilityCheck::new(&self.plan.claims, weight_H(self.plan, self.object)),
+            holding: self.holding(),
+            holds: self.holds(),
         };
         let mut frames = vec![Frames::new(self.hand); SAMPLES + 1];
         let mut touches = [[None; MAX_FINGERS]; SAMPLES + 1];
@@ -120,6 +126,20 @@ impl Walk<'_> {
             self.segment(leg, &mut sampled, &mut frames, &mut touches);
         }
         self.gather(sampled, tolerances)
+    }
+
+    fn holding(&self) -> Option<Option<HoldingCheck>> {
+        let claims = &self.plan.claims;
+        let Criterion::Holding(load) = &claims.criterion else { return None };
+        // Without an elliptic cone nothing can be checked, and the check of closure says so.
+        claims.contact.cone?;
+        Some(HoldingCheck::new(claims, load, weight_H(self.plan, self.object)))
+    }
+
+    fn holds(&self) -> Option<HoldsCheck> {
+        let mut states = self.plan.segments.iter().flat_map(|segment| &segment.states);
+        let has_forces = states.any(|state| state.forces.is_some());
+        HoldsCheck::new(&self.plan.claims, weight_H(self.plan, self.object), self.object.mass, has_forces)
     }
 
     /// The segment's first state.
@@ -132,10 +152,17 @@ impl Walk<'_> {
     ) {
         sampled.contacts.start();
         sampled.stability.start();
+        sampled.holding.iter_mut().flatten().for_each(HoldingCheck::start);
         sampled.lift.start();
         frames.place(self.hand, leg, 0, 0.0);
         *touches = sampled.contacts.sample(leg, 0, 0, frames);
         sampled.stability.sample(leg, 0, 0, &frames.X_HO.rotation, touches);
+        if let Some(Some(holding)) = &mut sampled.holding {
+            holding.sample((leg, 0, 0), self.hand, frames, touches);
+        }
+        if let Some(holds) = &mut sampled.holds {
+            holds.state(leg, 0, self.hand, frames);
+        }
         sampled.clearance.start(leg, frames);
         if let Some(finger) = leg.moving {
             sampled.lift.sample(finger, 0, 0, frames);
@@ -161,12 +188,18 @@ impl Walk<'_> {
                     touches[sample] = sampled.contacts.sample(leg, state, sample, &frames[sample]);
                     let R_HO = &frames[sample].X_HO.rotation;
                     sampled.stability.sample(leg, state, sample, R_HO, &touches[sample]);
+                    if let Some(Some(holding)) = &mut sampled.holding {
+                        holding.sample((leg, state, sample), self.hand, &frames[sample], &touches[sample]);
+                    }
                 } else {
                     touches[sample] = touches[0];
                 }
                 if let Some(finger) = leg.moving {
                     sampled.lift.sample(finger, state, sample, &frames[sample]);
                 }
+            }
+            if let Some(holds) = &mut sampled.holds {
+                holds.state(leg, state + 1, self.hand, &frames[SAMPLES]);
             }
             sampled.clearance.step(leg, state, frames, touches);
         }
@@ -182,7 +215,7 @@ impl Walk<'_> {
             clearance: sampled.clearance.extreme(),
             slip,
             closure_residual,
-            holds: None,
+            holds: sampled.holds.as_ref().and_then(HoldsCheck::holds),
         };
         let mut checks = vec![Gauge::faults("form").check()];
         checks.push(motion_checks::quaternions(self.legs));
@@ -196,7 +229,12 @@ impl Walk<'_> {
         checks.extend(sampled.contacts.checks());
         checks.extend(sampled.lift.checks());
         checks.push(sampled.clearance.check());
-        checks.push(sampled.stability.check());
+        checks.push(match sampled.holding {
+            None => sampled.stability.check(),
+            Some(None) => HoldingCheck::no_meaning(),
+            Some(Some(holding)) => holding.check_made(),
+        });
+        checks.extend(sampled.holds.map(HoldsCheck::check));
         checks.push(claims::claims(self.plan, self.object));
         checks.push(ends::start(self.plan, self.legs, tolerances));
         checks.extend(ends::goals(self.plan, self.legs, tolerances));

@@ -187,8 +187,8 @@ fn remember(outcome: Outcome, hint: &mut Hint) -> Stability {
         Outcome::Separated(d) => (Stability::Unstable, SEPARATING_TWIST, d),
         Outcome::Undecided(_) => (Stability::Undecided, 0, Twist::ZERO),
     };
-    let [a, b, c, d, e, f] = twist.to_array();
-    *hint = Hint { tag, values: [a, b, c, d, e, f, 0.0, 0.0] };
+    *hint = Hint { tag, ..Hint::default() };
+    hint.values[..6].copy_from_slice(&twist.to_array());
     stability
 }
 

@@ -1,10 +1,12 @@
-//! Built-in stability tests: exact force closure, the conic program that it is checked against, cones of edges, the wrench ball, equilibrium.
+//! Built-in stability tests: exact force closure, the conic program that it is checked against, cones of edges, the wrench ball,
+//! equilibrium, holding.
 
 mod balance;
 mod closure;
 mod contacts;
 mod equilibrium;
 mod force_closure;
+mod holding;
 mod hull;
 mod linearised;
 mod socp;
@@ -14,6 +16,7 @@ mod wrenches;
 
 pub use equilibrium::{Equilibrium, EquilibriumSettings};
 pub use force_closure::{ForceClosure, ForceClosureSettings};
+pub use holding::{Holding, HoldingSettings};
 pub use linearised::{Linearised, LinearisedSettings};
 pub use socp::{Socp, SocpSettings};
 pub use wrench_ball::{Center, WrenchBall, WrenchBallSettings};

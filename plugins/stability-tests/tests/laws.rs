@@ -102,7 +102,7 @@ proptest! {
     }
 
     #[test]
-    fn no_hint_changes_a_verdict(touches in touches(), tag in 0..5_u64, values in prop::array::uniform8(-10.0..10.0_f64)) {
+    fn no_hint_changes_a_verdict(touches in touches(), tag in 0..5_u64, values in prop::array::uniform16(-10.0..10.0_f64)) {
         let mut hint = Hint { tag, values };
         let warm = with_context(|context| force_closure().test(&grasp_of(&touches), &mut hint, context));
         prop_assert_eq!(warm, verdict(&touches));
@@ -138,7 +138,7 @@ fn hints_made_of_nonsense_change_no_verdict() {
         let touches = touches_of(seed, 4, 0);
         for value in [0.0, f64::NAN, f64::INFINITY, 1e300, 1e-300] {
             for tag in [1, 2, u64::MAX] {
-                let mut hint = Hint { tag, values: [value; 8] };
+                let mut hint = Hint { tag, values: [value; Hint::VALUES] };
                 let warm = with_context(|c| force_closure().test(&grasp_of(&touches), &mut hint, c));
                 assert_eq!(warm, verdict(&touches), "hint {tag} {value}");
             }

@@ -241,7 +241,7 @@ proptest! {
     }
 
     #[test]
-    fn hints_are_left_alone(seed in any::<u64>(), tag in 0..4_u64, values in prop::array::uniform8(-1.0..1.0_f64)) {
+    fn hints_are_left_alone(seed in any::<u64>(), tag in 0..4_u64, values in prop::array::uniform16(-1.0..1.0_f64)) {
         let touches = grasp(&mut Random::from_key(seed, 38, 0, 0));
         let mut hint = Hint { tag, values };
         let hinted = with_context(|context| linearised(8).test(&grasp_of(&touches), &mut hint, context));

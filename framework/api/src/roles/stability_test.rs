@@ -31,6 +31,8 @@ pub enum Criterion {
     Closure,
     /// Bounded contact forces hold the object's weight and this load. The verdict depends on the object's orientation.
     Equilibrium(Load),
+    /// Forces within the joints' efforts, at a share of the friction, hold the object's weight and this load.
+    Holding(HoldLoad),
 }
 
 /// The disturbances that a grasp must resist beside gravity, and the forces that it may use.
@@ -47,6 +49,23 @@ pub struct Load {
     pub disturbance_torque: f64,
     /// The largest normal force of one contact (N).
     pub max_normal_force: f64,
+}
+
+/// What a grasp must hold, and by which means. The disturbances are the set that [`Load`] describes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HoldLoad {
+    /// Whether the object's weight must be held.
+    pub weight: bool,
+    /// The share of the friction that forces rely on (no unit).
+    pub friction_factor: f64,
+    /// The largest disturbing force at the centre of mass (N); 0 for none.
+    pub disturbance_force: f64,
+    /// The largest disturbing torque (N·m); 0 for none.
+    pub disturbance_torque: f64,
+    /// The largest normal force of one contact (N); absent where the joints' efforts alone bound it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_normal_force: Option<f64>,
 }
 
 /// Something that anybody can check by arithmetic and that proves a verdict.
@@ -139,6 +158,11 @@ pub trait StabilityTest: Send + Sync {
     /// What "stable" means for this test; force closure, or more than that, unless it says otherwise.
     fn criterion(&self) -> Criterion {
         Criterion::Closure
+    }
+
+    /// Whether grasps must say what the joints behind their contacts can do ([`Grasp::efforts`]); no unless it says so.
+    fn uses_efforts(&self) -> bool {
+        false
     }
 
     /// Whether the grasp is stable without `finger`.

@@ -1,12 +1,14 @@
 //! Descriptions: hand, object, obstacles, start and goals as plain data, the way files hold them. SI units.
 
 mod hand;
+mod hold;
 mod limits;
 mod mesh_source;
 mod object;
 mod problem;
 
 pub use hand::*;
+pub use hold::*;
 pub use limits::*;
 pub use mesh_source::*;
 pub use object::*;

@@ -1,6 +1,6 @@
 //! A planning problem as plain data: what a scenario file says, and what a plan file repeats.
 
-use super::{HandDescription, Limits, ObjectDescription, ObstacleDescription};
+use super::{HandDescription, HoldDescription, Limits, ObjectDescription, ObstacleDescription};
 use crate::{Body, FingerIndex, Pose, Refusal, Refuse, Rotation, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -173,6 +173,9 @@ pub struct Problem {
     /// Where the object may be sampled; by default a box about start and goals, 15 mm wider on each side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub workspace: Option<Workspace>,
+    /// What grasps must hold in the world; where absent, what the stability test asks for by itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hold: Option<HoldDescription>,
     /// Tolerances, resolution and budgets.
     #[serde(default)]
     pub limits: Limits,

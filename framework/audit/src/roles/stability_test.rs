@@ -160,4 +160,8 @@ impl StabilityTest for Audited<'_, dyn StabilityTest + '_> {
     fn criterion(&self) -> Criterion {
         self.inner.criterion()
     }
+
+    fn uses_efforts(&self) -> bool {
+        self.inner.uses_efforts()
+    }
 }

@@ -58,6 +58,11 @@ impl Document {
         place
     }
 
+    /// Whether the file has this key.
+    pub fn has(&self, path: &KeyPath) -> bool {
+        self.offsets.contains_key(&path.to_string())
+    }
+
     /// A refusal of the value at `path`.
     pub fn refuse(&self, path: &KeyPath, message: String) -> ScenarioError {
         self.refused(&Refusal::new("value", &message).key(path))

@@ -1,7 +1,8 @@
 //! The form of a scenario file.
 
 use regrasp_api::{
-    GoalDescription, Limits, ObjectDescription, ObstacleDescription, Slot, StartDescription, Workspace,
+    GoalDescription, HoldDescription, Limits, ObjectDescription, ObstacleDescription, Slot, StartDescription,
+    Workspace,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -42,6 +43,10 @@ pub struct ScenarioFile {
     /// Where the object may be sampled; by default a box about start and goals, 15 mm wider on each side.
     #[serde(default)]
     pub workspace: Option<Workspace>,
+    /// What grasps must hold in the world: weight, disturbances, at a share of the friction, within the joints' efforts. With it the stability
+    /// test is `holding` unless the file chooses another.
+    #[serde(default)]
+    pub hold: Option<HoldDescription>,
     /// Tolerances, resolution and budgets.
     #[serde(default)]
     pub limits: Limits,

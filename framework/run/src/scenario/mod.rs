@@ -7,6 +7,7 @@ mod document;
 mod error;
 mod file;
 mod hand;
+mod hold;
 mod json;
 mod library;
 
@@ -99,7 +100,8 @@ pub fn from_text(
 ) -> Result<Scenario, ScenarioError> {
     let document = Document::parse(file, text)?;
     let content: ScenarioFile = document.read()?;
-    let choices = choices(&document, &content.plugins, registry)?;
+    let mut choices = choices(&document, &content.plugins, registry)?;
+    hold::apply(&document, &content, &mut choices)?;
     let hand::LoadedHand { hand, description, remarks } = hand::load(&document, &content.hand, folder)?;
     let mut problem = problem(&content, description);
     check_problem(&problem).map_err(|error| document.refused(&error))?;
@@ -181,7 +183,8 @@ fn problem(content: &ScenarioFile, hand: HandDescription) -> Problem {
         start: content.start.clone(),
         goal: content.goal.clone(),
         workspace: content.workspace,
-        limits: content.limits,
+        hold: content.hold,
+        limits: hold::limits(content),
     }
 }
 

@@ -133,7 +133,7 @@ fn best(contacts: &[Contact], correction: &Correction, wanted: &[Vector6<f64>; C
 }
 
 /// The regular icosahedron whose faces touch the unit ball.
-fn icosahedron() -> Vec<Vec3> {
+pub(super) fn icosahedron() -> Vec<Vec3> {
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let size = 3.0_f64.sqrt() / (golden * golden);
     let mut vertices = Vec::with_capacity(12);

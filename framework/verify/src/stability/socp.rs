@@ -1,6 +1,7 @@
 //! The best internal force of a grasp, found by an interior-point solver.
 
 use super::force::{Contact, Force, Forces};
+use super::holding::Held;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use nalgebra::Vector6;
@@ -29,6 +30,23 @@ pub(crate) fn best_forces_for(contacts: &[Contact], wanted: &Vector6<f64>) -> Op
     let mut problem = Problem::new(OF_CONTACT * contacts.len() + 1);
     problem.balance(contacts, &tangents, wanted);
     problem.at_most_one(contacts.len());
+    problem.cones(contacts.len());
+    Some(forces_of(&problem.solve()?, &tangents))
+}
+
+/// The same within the joints' efforts: ± effort + t ≤ 1 for each joint, normal + t ≤ `most` where there is one, t ≤ 1; forces over `unit` (N).
+pub(crate) fn best_within(
+    held: &Held,
+    length: f64,
+    unit: f64,
+    most: Option<f64>,
+    wanted: &Vector6<f64>,
+) -> Option<(Forces, f64)> {
+    let contacts = &held.contacts[..];
+    let tangents: Vec<[Vec3; 2]> = contacts.iter().map(tangents).collect();
+    let mut problem = Problem::new(OF_CONTACT * contacts.len() + 1);
+    problem.balance(contacts, &tangents, wanted);
+    problem.within(held, &tangents, (length, unit), most);
     problem.cones(contacts.len());
     Some(forces_of(&problem.solve()?, &tangents))
 }
@@ -107,6 +125,35 @@ impl Problem {
             self.b.push(1.0);
         }
         self.cones.push(SupportedConeT::NonnegativeConeT(count));
+    }
+
+    /// Efforts, normal forces and t within their bounds.
+    fn within(&mut self, held: &Held, tangents: &[[Vec3; 2]], (length, unit): (f64, f64), most: Option<f64>) {
+        let (first, t) = (self.b.len(), self.variables - 1);
+        for (i, (contact, rows)) in held.contacts.iter().zip(&held.rows).enumerate() {
+            for row in rows {
+                let (normal, tangential, spin) = row.of(contact, length, unit);
+                let [u, v] = tangents[i].map(|tangent| tangential.dot(&tangent));
+                for sign in [1.0, -1.0] {
+                    let place = self.b.len();
+                    for (k, value) in [normal, u, v, spin].into_iter().enumerate() {
+                        self.set(place, OF_CONTACT * i + k, sign * value);
+                    }
+                    self.set(place, t, 1.0);
+                    self.b.push(1.0);
+                }
+            }
+            if let Some(most) = most {
+                let place = self.b.len();
+                self.set(place, OF_CONTACT * i, 1.0);
+                self.set(place, t, 1.0);
+                self.b.push(most);
+            }
+        }
+        let place = self.b.len();
+        self.set(place, t, 1.0);
+        self.b.push(1.0);
+        self.cones.push(SupportedConeT::NonnegativeConeT(self.b.len() - first));
     }
 
     /// For each contact: (normal - t, tangential, torsional) in the second-order cone.

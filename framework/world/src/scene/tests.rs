@@ -24,6 +24,7 @@ fn problem() -> Problem {
         start: StartDescription { pose: pose([0.0, 0.0, 0.085]), grasp: None },
         goal: vec![GoalDescription { pose: pose([0.0, 0.01, 0.095]), grasp: None }],
         workspace: None,
+        hold: None,
         limits: Default::default(),
     }
 }

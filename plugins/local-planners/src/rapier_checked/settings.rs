@@ -74,6 +74,7 @@ impl Default for RapierCheckedSettings {
             time_step,
             grip,
             effort_share,
+            ..
         } = SimulationSettings::default();
         Self {
             rolling: RollingSettings::default(),
@@ -109,6 +110,7 @@ impl RapierCheckedSettings {
             time_step: self.time_step,
             grip: self.grip,
             effort_share: self.effort_share,
+            ..SimulationSettings::default()
         }
     }
 

@@ -110,9 +110,10 @@ pub(super) fn hint_never_decides(subject: &Subject<'_>) -> Finding {
     for (touches, _) in grasps::clear_cases(12, 120) {
         let grasp = grasp_of(&touches);
         let plain = verdict(&*test, &grasp)?;
-        let mut noise = Hint { tag: random.index(4) as u64, values: [0.0; 8] };
+        let mut noise = Hint { tag: random.index(4) as u64, values: [0.0; Hint::VALUES] };
         noise.values.iter_mut().for_each(|x| *x = random.normal());
-        let mut strange = Hint { tag: random.index(4) as u64, values: [odd[random.index(odd.len())]; 8] };
+        let mut strange =
+            Hint { tag: random.index(4) as u64, values: [odd[random.index(odd.len())]; Hint::VALUES] };
         for hint in [&mut carried, &mut noise, &mut strange] {
             let before = *hint;
             let hinted = match test.test(&grasp, hint, &mut context(0)) {

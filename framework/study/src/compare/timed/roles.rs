@@ -55,6 +55,10 @@ impl StabilityTest for Timed<'_, dyn StabilityTest + '_> {
         self.inner.criterion()
     }
 
+    fn uses_efforts(&self) -> bool {
+        self.inner.uses_efforts()
+    }
+
     fn stable_without(
         &self,
         grasp: &Grasp<'_>,

@@ -1,0 +1,17 @@
+//! Forces that hold a load inside friction cones and within the joints' efforts: which there are, and how little friction they need.
+
+mod bearing;
+mod load;
+mod newton;
+mod share;
+
+pub(crate) use bearing::stacked;
+pub use bearing::{Bearing, Exerted, Press};
+pub use load::{Answer, Bearings, HeldLoad};
+pub(crate) use newton::Search;
+pub use newton::{Balanced, Forces};
+pub(crate) use share::share_of;
+pub use share::{Smallest, smallest_share};
+
+#[cfg(test)]
+mod tests;

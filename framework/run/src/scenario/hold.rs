@@ -1,0 +1,102 @@
+//! `[hold]`: what it sets, and what contradicts it.
+
+use super::{Document, ScenarioError, ScenarioFile, key_path};
+use regrasp_api::{FrictionFactor, HoldDescription, Limits, Slot};
+use regrasp_host::Choices;
+use serde_json::Value;
+
+/// The stability test that does what `[hold]` asks for.
+pub(crate) const HOLDING: &str = "stability-test/holding";
+
+/// The range of `friction_factor`.
+const FACTORS: std::ops::RangeInclusive<f64> = 0.05..=1.0;
+
+/// Checks `[hold]` and chooses the stability test that keeps it, unless the file chooses one.
+pub(super) fn apply(
+    document: &Document,
+    content: &ScenarioFile,
+    choices: &mut Choices,
+) -> Result<(), ScenarioError> {
+    let Some(hold) = &content.hold else { return Ok(()) };
+    check(document, content, hold)?;
+    if content.plugins.stability_test.id.is_none() && content.plugins.stability_test.settings.is_empty() {
+        choices.use_plugin(Slot::StabilityTest, HOLDING);
+    }
+    if choices.choice(Slot::StabilityTest).id != HOLDING {
+        return other_test(document, hold, &choices.choice(Slot::StabilityTest).id);
+    }
+    let mut set = |key: &str, value: Value| choices.set(Slot::StabilityTest, key, value);
+    set("weight", hold.weight.into());
+    set("friction_factor", share(hold).into());
+    set("disturbance_force", hold.disturbance[0].into());
+    set("disturbance_torque", hold.disturbance[1].into());
+    if let Some(most) = hold.max_normal_force {
+        set("max_normal_force", most.into());
+    }
+    Ok(())
+}
+
+/// The limits with the share of the friction that `[hold]` plans with.
+pub(super) fn limits(content: &ScenarioFile) -> Limits {
+    let mut limits = content.limits;
+    if let Some(hold) = &content.hold {
+        limits.resolution.friction_margin = share(hold);
+    }
+    limits
+}
+
+/// The first share to plan with.
+fn share(hold: &HoldDescription) -> f64 {
+    hold.friction_factor.shares()[0]
+}
+
+fn check(document: &Document, content: &ScenarioFile, hold: &HoldDescription) -> Result<(), ScenarioError> {
+    let refuse = |key: &str, message: String| Err(document.refuse(&key_path(key), message));
+    if let FrictionFactor::Share(factor) = hold.friction_factor
+        && !FACTORS.contains(&factor)
+    {
+        let range = format!("{}..={}", FACTORS.start(), FACTORS.end());
+        return refuse(
+            "hold.friction_factor",
+            format!(
+                "`hold.friction_factor` = {factor} is outside {range}; give a share of the friction, or \"most\""
+            ),
+        );
+    }
+    if document.has(&key_path("limits.resolution.friction_margin")) {
+        let both = "`limits.resolution.friction_margin` and `[hold]` both say how much friction plans rely on; leave one out";
+        return refuse("limits.resolution.friction_margin", both.into());
+    }
+    if !hold.weight && hold.disturbance == [0.0; 2] {
+        let nothing = "`hold.weight` = false with no `disturbance` asks for nothing to be held; give one, or leave `[hold]` out";
+        return refuse("hold.weight", nothing.into());
+    }
+    let weight = content.object.mass * content.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    if let Some(most) = hold.max_normal_force.filter(|_| hold.weight) {
+        let fingers = regrasp_api::MAX_FINGERS as f64;
+        // Each contact gives at most its normal force and as much friction as goes with it.
+        let carried = fingers * most * (1.0 + content.object.friction.powi(2)).sqrt();
+        if carried < weight {
+            return refuse(
+                "hold.max_normal_force",
+                format!(
+                    "`hold.max_normal_force` = {most} N cannot carry the object's weight of {weight:.3} N"
+                ),
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Another test that the file chooses may stand where `[hold]` asks for no more than a share of the friction.
+fn other_test(document: &Document, hold: &HoldDescription, id: &str) -> Result<(), ScenarioError> {
+    let asked = [
+        (hold.disturbance != [0.0; 2], "disturbance"),
+        (hold.max_normal_force.is_some(), "max_normal_force"),
+        (hold.friction_factor == FrictionFactor::Most(regrasp_api::Most::Most), "friction_factor"),
+    ];
+    let Some((_, key)) = asked.into_iter().find(|(is_asked, _)| *is_asked) else { return Ok(()) };
+    let message =
+        format!("`hold.{key}`: `{id}` cannot do what it asks for; use `{HOLDING}`, or leave the key out");
+    Err(document.refuse(&key_path(&format!("hold.{key}")), message))
+}

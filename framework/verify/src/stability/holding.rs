@@ -1,0 +1,244 @@
+//! Forces within the joints' efforts that hold the object's weight and a load, at a share of the friction: a proof by arithmetic.
+
+use super::force::{Contact, Correction, Forces, LEAST_SLACK};
+use super::load::icosahedron;
+use super::socp;
+use crate::contact_checks::Touch;
+use crate::hand::Chains;
+use crate::track::{Frames, Leg, SAMPLES};
+use crate::verdict::{Check, Gauge, Side};
+use nalgebra::{Vector6, vector};
+use regrasp_api::{HoldLoad, MAX_FINGERS, Vec3};
+use regrasp_plan::{Claims, ConeClaim, Place};
+
+/// Grasps not proved to hold after which no more are looked at: the plan is refused anyway.
+const MOST_FAILURES: usize = 100;
+/// The part of the solver's slack below which carried forces are no longer taken.
+const DWINDLED: f64 = 0.4;
+
+/// One joint behind a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Row {
+    /// Velocity of the fingertip's point at the contact per joint speed, in O.
+    pub(crate) column_O: Vec3,
+    /// Angular velocity about the inward normal per joint speed.
+    pub(crate) spin: f64,
+    /// Largest effort (N·m; N).
+    pub(crate) limit: f64,
+}
+
+impl Row {
+    /// Effort over its limit per unit of normal, tangential (a vector) and torsional force in the contact's scaled coordinates, times `unit` (N).
+    pub(crate) fn of(&self, contact: &Contact, length: f64, unit: f64) -> (f64, Vec3, f64) {
+        let scale = unit / self.limit;
+        let column = self.column_O * scale;
+        (column.dot(&contact.n), column * contact.mu, self.spin * contact.gamma * length * scale)
+    }
+}
+
+/// A grasp with what the joints behind it can do.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Held {
+    pub(crate) contacts: Vec<Contact>,
+    pub(crate) rows: Vec<Vec<Row>>,
+}
+
+/// Follows the forces that hold the object along a plan that claims that they do.
+pub(crate) struct HoldingCheck {
+    gauge: Gauge,
+    load: HoldLoad,
+    cone: ConeClaim,
+    weight_H: Vec3,
+    center_O: Vec3,
+    length: f64,
+    /// What forces are divided by (N).
+    unit: f64,
+    carried: Option<Vec<Forces>>,
+    solved: f64,
+    failures: usize,
+    last: Option<(Held, Vec3)>,
+}
+
+impl HoldingCheck {
+    /// `None` where the claim has no meaning.
+    pub(crate) fn new(claims: &Claims, load: &HoldLoad, weight_H: Vec3) -> Option<Self> {
+        let cone = claims.contact.cone?;
+        let HoldLoad { friction_factor, disturbance_force, disturbance_torque, max_normal_force, weight } =
+            *load;
+        let sizes =
+            [cone.mu, cone.gamma, disturbance_force, disturbance_torque, max_normal_force.unwrap_or(1.0)];
+        let sound = sizes.iter().all(|x| *x >= 0.0 && x.is_finite())
+            && friction_factor > 0.0
+            && friction_factor <= 1.0
+            && claims.margin.length > 0.0
+            && claims.margin.length.is_finite();
+        let weight_H = if weight { weight_H } else { Vec3::zeros() };
+        let unit = weight_H.norm().max(disturbance_force).max(disturbance_torque / claims.margin.length);
+        let cone = ConeClaim { mu: cone.mu * friction_factor, gamma: cone.gamma * friction_factor };
+        (sound && unit > 0.0).then(|| Self {
+            gauge: Gauge::new("stability", "force", Side::Above, LEAST_SLACK),
+            load: *load,
+            cone,
+            weight_H,
+            center_O: claims.margin.center_O.into(),
+            length: claims.margin.length,
+            unit,
+            carried: None,
+            solved: 0.0,
+            failures: 0,
+            last: None,
+        })
+    }
+
+    /// Starts a segment: the contacts change, so no forces are carried over.
+    pub(crate) fn start(&mut self) {
+        self.carried = None;
+        self.last = None;
+    }
+
+    /// Takes in one sample, with where everything is and where the fingers touch.
+    pub(crate) fn sample(
+        &mut self,
+        (leg, state, sample): (&Leg<'_>, usize, usize),
+        hand: &Chains,
+        frames: &Frames,
+        touches: &[Option<Touch>; MAX_FINGERS],
+    ) {
+        if self.failures >= MOST_FAILURES {
+            return;
+        }
+        let held = self.held(leg, hand, frames, touches);
+        let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
+        let here = (held, weight_O);
+        if self.last.as_ref() == Some(&here) {
+            return; // In a regrasp all that holds rests.
+        }
+        let found = self.prove(&here.0, &weight_O);
+        self.last = Some(here);
+        self.failures += usize::from(found.is_err());
+        let place = || leg.between(state, sample as f64 / SAMPLES as f64);
+        self.gauge.note(found.unwrap_or_else(|slack| slack), place);
+    }
+
+    fn held(
+        &self,
+        leg: &Leg<'_>,
+        hand: &Chains,
+        frames: &Frames,
+        touches: &[Option<Touch>; MAX_FINGERS],
+    ) -> Held {
+        let mut held = Held::default();
+        // Contacts may spin in a transfer, and a spinning contact transmits no torsion.
+        let gamma = if leg.moving.is_some() { self.cone.gamma } else { 0.0 };
+        for (finger, touch) in touches.iter().enumerate() {
+            let Some(touch) = touch.filter(|_| leg.moving != Some(finger)) else { continue };
+            let n = -touch.n_O;
+            let r = (touch.p_OC - self.center_O) / self.length;
+            held.contacts.push(Contact { r, n, mu: self.cone.mu, gamma: gamma / self.length });
+            held.rows.push(hand.rows(finger, frames, &touch.p_OC, &n));
+        }
+        held
+    }
+
+    /// The slack with which the grasp is proved to hold the load; `Err` gives what could not be proved.
+    fn prove(&mut self, held: &Held, weight_O: &Vec3) -> Result<f64, f64> {
+        let correction = Correction::new(&held.contacts).ok_or(f64::NEG_INFINITY)?;
+        let wanted = self.wanted(weight_O);
+        if let Some(carried) = self.carried.take()
+            && let Ok(slack) = self.check(held, &correction, carried, &wanted)
+            && slack > DWINDLED * self.solved
+        {
+            return Ok(slack);
+        }
+        let mut forces = Vec::with_capacity(wanted.len());
+        for wanted in &wanted {
+            let most = self.load.max_normal_force.map(|most| most / self.unit);
+            let best = socp::best_within(held, self.length, self.unit, most, wanted);
+            forces.push(best.ok_or(f64::NEG_INFINITY)?.0);
+        }
+        self.solved = self.check(held, &correction, forces, &wanted)?;
+        Ok(self.solved)
+    }
+
+    /// The wrenches that the contacts must give, over the unit.
+    fn wanted(&self, weight_O: &Vec3) -> Vec<Vector6<f64>> {
+        let f = -weight_O / self.unit;
+        let weight = vector![f.x, f.y, f.z, 0.0, 0.0, 0.0];
+        let force = self.load.disturbance_force / self.unit;
+        let torque = self.load.disturbance_torque / (self.unit * self.length);
+        let mut wanted = vec![weight];
+        if force > 0.0 || torque > 0.0 {
+            for v in icosahedron() {
+                wanted.push(weight + vector![v.x, v.y, v.z, 0.0, 0.0, 0.0] * force);
+                wanted.push(weight + vector![0.0, 0.0, 0.0, v.x, v.y, v.z] * torque);
+            }
+        }
+        wanted
+    }
+
+    /// Brings forces to exactly the wanted wrenches, checks cones and efforts, and carries them on; `Err` gives the slack that is too little.
+    fn check(
+        &mut self,
+        held: &Held,
+        correction: &Correction,
+        mut forces: Vec<Forces>,
+        wanted: &[Vector6<f64>],
+    ) -> Result<f64, f64> {
+        let mut least = f64::INFINITY;
+        for (forces, wanted) in forces.iter_mut().zip(wanted) {
+            *forces = correction.towards(&held.contacts, forces, wanted);
+            let mut residual = -wanted;
+            let mut slack = f64::INFINITY;
+            for (i, contact) in held.contacts.iter().enumerate() {
+                residual += contact.wrench(&forces[i]);
+                slack = slack.min(self.slack(held, i, forces));
+            }
+            // What balances the residual exactly is smaller than residual/singular, and must leave neither cones nor efforts.
+            let steepest = 1.0 + self.steepest(held);
+            if !(slack >= LEAST_SLACK && residual.norm() * steepest <= 0.5 * correction.singular * slack) {
+                return Err(slack.min(0.0));
+            }
+            least = least.min(slack);
+        }
+        self.carried = Some(forces);
+        Ok(least)
+    }
+
+    /// The room of one contact's force: to its cone, to the largest normal force, and of its joints' efforts (of the limit).
+    fn slack(&self, held: &Held, i: usize, forces: &Forces) -> f64 {
+        let (contact, force) = (&held.contacts[i], &forces[i]);
+        let mut slack = force.slack();
+        if let Some(most) = self.load.max_normal_force {
+            slack = slack.min(most / self.unit - force.normal);
+        }
+        for row in &held.rows[i] {
+            let (normal, tangential, spin) = row.of(contact, self.length, self.unit);
+            let share = normal * force.normal + tangential.dot(&force.tangential) + spin * force.spin;
+            slack = slack.min(1.0 - share.abs());
+        }
+        slack
+    }
+
+    /// How fast an effort's share grows with a force, at most.
+    fn steepest(&self, held: &Held) -> f64 {
+        let each = held.contacts.iter().zip(&held.rows).flat_map(|(contact, rows)| {
+            rows.iter().map(|row| {
+                let (normal, tangential, spin) = row.of(contact, self.length, self.unit);
+                normal.abs() + tangential.norm() + spin.abs()
+            })
+        });
+        each.fold(0.0, f64::max)
+    }
+
+    pub(crate) fn check_made(self) -> Check {
+        self.gauge.check()
+    }
+
+    /// The check of a claim without meaning.
+    pub(crate) fn no_meaning() -> Check {
+        let mut gauge = Gauge::new("stability", "force", Side::Above, LEAST_SLACK);
+        let note = Some("the claimed criterion has no meaning".into());
+        gauge.note(f64::NAN, || Place { note, ..Default::default() });
+        gauge.check()
+    }
+}

@@ -1,0 +1,235 @@
+//! What the plan's own forces hold: arithmetic on the forces that its states record.
+
+use super::force::{Contact, Correction, Force, Forces};
+use super::holding::{Held, Row};
+use super::load::icosahedron;
+use crate::hand::Chains;
+use crate::track::{Frames, Leg};
+use crate::verdict::{Check, Gauge};
+use nalgebra::{Vector6, vector};
+use regrasp_api::{HoldLoad, MAX_FINGERS, Vec3};
+use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, Holds, Place};
+
+/// How far forces may be from balance, of the load.
+const BALANCED: f64 = 1e-6;
+/// By how much forces may pass a claimed bound by rounding, of the bound.
+const ROUNDING: f64 = 1e-6;
+/// The friction that is written where none would do.
+const NO_FRICTION_DOES: f64 = 100.0;
+
+/// Follows the recorded forces.
+pub(crate) struct HoldsCheck {
+    gauge: Gauge,
+    /// What the plan claims to hold, if it does.
+    load: Option<HoldLoad>,
+    cone: ConeClaim,
+    weight_H: Vec3,
+    mass: f64,
+    center_O: Vec3,
+    length: f64,
+    friction: Option<Extreme>,
+    most_mass: Option<Extreme>,
+    disturbance: Option<Extreme>,
+    effort: Option<Extreme>,
+}
+
+/// The figures of one state.
+struct Figures {
+    friction: f64,
+    mass: f64,
+    disturbance: f64,
+    effort: f64,
+}
+
+impl HoldsCheck {
+    /// `None` where the plan claims no cone, or none of its states holds forces.
+    pub(crate) fn new(claims: &Claims, weight_H: Vec3, mass: f64, has_forces: bool) -> Option<Self> {
+        let cone = claims.contact.cone.filter(|cone| cone.mu > 0.0 && cone.mu.is_finite())?;
+        let load = match &claims.criterion {
+            Criterion::Holding(load) => Some(*load),
+            _ => None,
+        };
+        let length = claims.margin.length;
+        (has_forces && length > 0.0 && mass > 0.0).then(|| Self {
+            gauge: Gauge::faults("forces"),
+            load,
+            cone,
+            weight_H,
+            mass,
+            center_O: claims.margin.center_O.into(),
+            length,
+            friction: None,
+            most_mass: None,
+            disturbance: None,
+            effort: None,
+        })
+    }
+
+    /// Takes in one of the plan's states, everything placed there.
+    pub(crate) fn state(&mut self, leg: &Leg<'_>, state: usize, hand: &Chains, frames: &Frames) {
+        let record = leg.states[state].record;
+        let Some(recorded) = &record.forces else {
+            // Soft fingers may hold by torques about the normals, which are not recorded.
+            if self.cone.gamma == 0.0 {
+                let nothing =
+                    Figures { friction: NO_FRICTION_DOES, mass: 0.0, disturbance: 0.0, effort: 0.0 };
+                self.take(&nothing, || leg.at(state));
+            }
+            return;
+        };
+        let place = |note: &str| Place { note: Some(note.into()), ..leg.at(state) };
+        let (mut held, mut given) = (Held::default(), Vec::new());
+        for (finger, contact) in record.contacts.iter().enumerate() {
+            let force = recorded.get(finger).copied().flatten();
+            let holds = contact.filter(|_| leg.moving != Some(finger));
+            let (Some(contact), Some(force)) = (holds, force) else {
+                if force.is_some() || holds.is_some() {
+                    self.gauge.fault(|| place("forces belong to the fingers that hold, and to all of them"));
+                    return;
+                }
+                continue;
+            };
+            let (p_OC, n) = (Vec3::from(contact.point_O), -Vec3::from(contact.normal_O));
+            let r = (p_OC - self.center_O) / self.length;
+            held.contacts.push(Contact { r, n, mu: self.cone.mu, gamma: 0.0 });
+            held.rows.push(hand.rows(finger, frames, &p_OC, &n));
+            given.push(Vec3::from(force));
+        }
+        if !given.iter().flatten().all(|x| x.abs() < 1e9) {
+            self.gauge.fault(|| place("a force that is not finite, or beyond any hand"));
+            return;
+        }
+        let forces = self.forces(&held, &given);
+        let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
+        if let Some(fault) = self.fault(&held, &forces, &weight_O) {
+            self.gauge.fault(|| place(fault));
+        }
+        let figures = self.figures(&held, &forces, &weight_O);
+        self.take(&figures, || leg.at(state));
+    }
+
+    /// The recorded forces in the contacts' scaled coordinates.
+    fn forces(&self, held: &Held, given: &[Vec3]) -> Forces {
+        let mut forces = [Force::default(); MAX_FINGERS];
+        for (force, (contact, given)) in forces.iter_mut().zip(held.contacts.iter().zip(given)) {
+            force.normal = contact.n.dot(given);
+            force.tangential = (given - contact.n * force.normal) / contact.mu;
+        }
+        forces
+    }
+
+    /// What is wrong with the forces of one state.
+    fn fault(&self, held: &Held, forces: &Forces, weight_O: &Vec3) -> Option<&'static str> {
+        let mut residual = vector![weight_O.x, weight_O.y, weight_O.z, 0.0, 0.0, 0.0];
+        let mut largest = residual.norm();
+        for (contact, force) in held.contacts.iter().zip(forces) {
+            let wrench = contact.wrench(force);
+            residual += wrench;
+            largest = largest.max(wrench.norm());
+        }
+        if residual.norm() > BALANCED * largest {
+            return Some("the forces do not balance the object's weight");
+        }
+        let load = self.load.as_ref()?;
+        for (i, force) in forces.iter().enumerate().take(held.contacts.len()) {
+            if friction_of(force) > load.friction_factor * (1.0 + ROUNDING) {
+                return Some("a force relies on more friction than the plan claims");
+            }
+            if effort_of(held, i, force, self.length) > 1.0 + ROUNDING {
+                return Some("a force takes more than a joint's effort");
+            }
+            if load.max_normal_force.is_some_and(|most| force.normal > most * (1.0 + ROUNDING)) {
+                return Some("a force presses harder than the plan claims");
+            }
+        }
+        None
+    }
+
+    fn figures(&self, held: &Held, forces: &Forces, weight_O: &Vec3) -> Figures {
+        let each = || (0..held.contacts.len()).map(|i| (i, &forces[i]));
+        let friction = each().map(|(_, force)| friction_of(force)).fold(0.0, f64::max) * self.cone.mu;
+        let effort = each().map(|(i, force)| effort_of(held, i, force, self.length)).fold(0.0, f64::max);
+        let mut figures =
+            Figures { friction: friction.min(NO_FRICTION_DOES), mass: 0.0, disturbance: 0.0, effort };
+        let Some(correction) = Correction::new(&held.contacts) else { return figures };
+        let further = |wanted: Vector6<f64>| {
+            let zero = [Force::default(); MAX_FINGERS];
+            self.reach(held, forces, &correction.towards(&held.contacts, &zero, &wanted))
+        };
+        let weight = vector![weight_O.x, weight_O.y, weight_O.z, 0.0, 0.0, 0.0];
+        figures.mass = if weight.norm() > 0.0 { self.mass * (1.0 + further(-weight)) } else { 0.0 };
+        let pushes = icosahedron().into_iter().map(|v| further(vector![v.x, v.y, v.z, 0.0, 0.0, 0.0]));
+        figures.disturbance = pushes.fold(f64::INFINITY, f64::min);
+        figures
+    }
+
+    /// The largest multiple of `more` that may be added to the forces within cones and efforts; 0 where they are outside already.
+    fn reach(&self, held: &Held, forces: &Forces, more: &Forces) -> f64 {
+        let mut reach = 1e6_f64;
+        for i in 0..held.contacts.len() {
+            let (force, more) = (&forces[i], &more[i]);
+            reach = reach.min(reach_of_cone(force, more));
+            let rows = held.rows[i].iter().map(|row| {
+                let share = |force: &Force| share(row, &held.contacts[i], force, self.length);
+                let (now, rate) = (share(force), share(more));
+                if rate == 0.0 { f64::INFINITY } else { ((rate.signum() - now) / rate).max(0.0) }
+            });
+            reach = rows.fold(reach, f64::min);
+        }
+        reach
+    }
+
+    fn take(&mut self, figures: &Figures, place: impl Fn() -> Place) {
+        let worse = |kept: &mut Option<Extreme>, value: f64, larger: bool| {
+            let is_worse =
+                kept.as_ref().is_none_or(|k| if larger { value > k.value } else { value < k.value });
+            if is_worse && value.is_finite() {
+                *kept = Some(Extreme { value, place: place() });
+            }
+        };
+        worse(&mut self.friction, figures.friction, true);
+        worse(&mut self.effort, figures.effort, true);
+        worse(&mut self.most_mass, figures.mass, false);
+        worse(&mut self.disturbance, figures.disturbance, false);
+    }
+
+    /// The figures for the certificate.
+    pub(crate) fn holds(&self) -> Option<Holds> {
+        Some(Holds {
+            friction: self.friction.clone()?,
+            mass: self.most_mass.clone()?,
+            disturbance: self.disturbance.clone()?,
+            effort: self.effort.clone(),
+        })
+    }
+
+    pub(crate) fn check(self) -> Check {
+        self.gauge.check()
+    }
+}
+
+/// The share of the friction that a force needs.
+fn friction_of(force: &Force) -> f64 {
+    if force.normal > 0.0 { force.tangential.norm() / force.normal } else { f64::INFINITY }
+}
+
+fn share(row: &Row, contact: &Contact, force: &Force, length: f64) -> f64 {
+    let (normal, tangential, spin) = row.of(contact, length, 1.0);
+    normal * force.normal + tangential.dot(&force.tangential) + spin * force.spin
+}
+
+/// The largest share of an effort limit behind the contact with this number.
+fn effort_of(held: &Held, i: usize, force: &Force, length: f64) -> f64 {
+    held.rows[i].iter().map(|row| share(row, &held.contacts[i], force, length).abs()).fold(0.0, f64::max)
+}
+
+/// The smallest λ > 0 at which force + λ more leaves the cone normal ≥ |tangential|.
+fn reach_of_cone(force: &Force, more: &Force) -> f64 {
+    let form = |a: &Force, b: &Force| a.normal * b.normal - a.tangential.dot(&b.tangential);
+    let (q, slope, curve) = (form(force, force), 2.0 * form(force, more), form(more, more));
+    if q <= 0.0 || force.normal <= 0.0 {
+        return 0.0;
+    }
+    let root = (slope * slope - 4.0 * curve * q).max(0.0).sqrt();
+    if root > slope { 2.0 * q / (root - slope) } else { f64::INFINITY }
+}

@@ -1,0 +1,246 @@
+//! `stability-test/holding`: forces within the joints' efforts hold the object's weight and disturbances at a share of the friction.
+
+use regrasp_api::{
+    Assessment, Build, BuildError, CallError, Certificate, Context, Criterion, Entry, FingerIndex, Grasp,
+    Hint, HoldLoad, ObjectModel, Settings, SettingsError, Slot, Stability, StabilityTest, Vec3, check_range,
+    check_settings,
+};
+use regrasp_physics::{Balanced, Bearings, HeldLoad, Press, smallest_share};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+const ID: &str = "stability-test/holding";
+
+/// Settings of [`Holding`]; `[hold]` in a scenario gives them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct HoldingSettings {
+    /// Whether the object's weight must be held.
+    pub weight: bool,
+    /// The share of the friction that the plan claims to rely on (no unit); the planner hands the test cones of that friction. 0.05 to 1, default 0.8.
+    #[schemars(range(min = 0.05, max = 1.0))]
+    pub friction_factor: f64,
+    /// Largest disturbing force at the centre of mass, in any direction (N), 0 to 1e4, default 0: none.
+    #[schemars(range(min = 0.0, max = 1e4))]
+    pub disturbance_force: f64,
+    /// Largest disturbing torque, about any axis (N·m), 0 to 1e3, default 0: none.
+    #[schemars(range(min = 0.0, max = 1e3))]
+    pub disturbance_torque: f64,
+    /// Largest normal force of one contact (N), 1e-2 to 1e4; where absent the joints' efforts alone bound it.
+    #[schemars(range(min = 1e-2, max = 1e4))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(example = 10.0)]
+    pub max_normal_force: Option<f64>,
+    /// The share of friction and efforts that is kept back (no unit), so that what holds at a plan's states holds between them too; 0 to 0.5, default 0.03.
+    #[schemars(range(min = 0.0, max = 0.5))]
+    pub reserve: f64,
+}
+
+impl Default for HoldingSettings {
+    fn default() -> Self {
+        Self {
+            weight: true,
+            friction_factor: 0.8,
+            disturbance_force: 0.0,
+            disturbance_torque: 0.0,
+            max_normal_force: None,
+            reserve: 0.03,
+        }
+    }
+}
+
+impl Settings for HoldingSettings {
+    fn validate(&self) -> Result<(), SettingsError> {
+        check_range("friction_factor", self.friction_factor, 0.05, 1.0)?;
+        check_range("disturbance_force", self.disturbance_force, 0.0, 1e4)?;
+        check_range("disturbance_torque", self.disturbance_torque, 0.0, 1e3)?;
+        self.max_normal_force.map_or(Ok(()), |most| check_range("max_normal_force", most, 1e-2, 1e4))?;
+        check_range("reserve", self.reserve, 0.0, 0.5)
+    }
+}
+
+/// Stable where contact forces inside the cones, with joint efforts Jᵀf within the limits, hold the object's weight and every disturbance of a set.
+///
+/// The efforts come with the grasp ([`Grasp::efforts`]); a contact that carries none is bounded by `max_normal_force` alone. Elliptic cones are
+/// taken exactly. For the weight alone, and with each of the 24 wrenches that [`regrasp_api::Load`] describes, some forces must balance: then,
+/// cones and efforts being convex, everything between is balanced too. Forces are found by Newton's method to the analytic centre of those
+/// that balance, in the manner of Boyd & Wegbreit, "Fast computation of optimal contact forces", T-RO 2007. A yes is proved by forces strictly inside, a
+/// no by a twist on which the load has more power than the fingers can give, their joints at the efforts' limits; neither gives
+/// [`Stability::Undecided`].
+///
+/// Verdicts depend on the object's orientation, mass and centre of mass and on the fingers' postures. They are monotone in friction, efforts,
+/// `max_normal_force` and added contacts.
+///
+/// The margin is 1 less the smallest share of the cones' friction that holds the weight (no unit). The certificate of a stable grasp is
+/// forces (N) that hold the weight; that of an unstable one the object's twist.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Holding {
+    settings: HoldingSettings,
+    load: HeldLoad,
+}
+
+impl Holding {
+    /// The test with checked settings, for this object.
+    pub fn new(settings: HoldingSettings, object: &ObjectModel) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        let load = HeldLoad {
+            mass: if settings.weight { object.mass } else { 0.0 },
+            p_OCm: object.p_OCm,
+            length: object.mesh.radius().max(1e-6),
+            disturbance: (settings.disturbance_force, settings.disturbance_torque),
+            press: Press {
+                max_normal_force: settings.max_normal_force,
+                effort_share: 1.0 - settings.reserve,
+            },
+        };
+        Ok(Self { settings, load })
+    }
+
+    fn bearings(&self, grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Result<Bearings, CallError> {
+        let bearings = self.load.bearings(grasp, lifted, 1.0 - self.settings.reserve);
+        bearings.ok_or_else(|| CallError::Unsupported {
+            plugin: ID.into(),
+            reason: "polyhedral cones; choose a contact model with elliptic ones, or `linearised`".into(),
+        })
+    }
+
+    fn judge(
+        &self,
+        grasp: &Grasp<'_>,
+        lifted: Option<FingerIndex>,
+        hint: &mut Hint,
+    ) -> Result<(Stability, Balanced), CallError> {
+        let bearings = self.bearings(grasp, lifted)?;
+        let answer = self.load.held(&bearings, &grasp.g_O, 1.0, hint);
+        let stability = match answer.balanced {
+            Balanced::Yes(_) if answer.holds => Stability::Stable,
+            Balanced::Unknown if bearings.len() > 2 => Stability::Undecided,
+            _ => Stability::Unstable,
+        };
+        Ok((stability, answer.balanced))
+    }
+
+    fn certificate(&self, bearings: &Bearings, balanced: &Balanced, center_O: &Vec3) -> Certificate {
+        match balanced {
+            Balanced::Yes(forces) => {
+                let exerted = || bearings.iter().zip(forces).map(|(bearing, x)| bearing.force(x));
+                Certificate::InternalForce {
+                    forces_O: exerted().map(|exerted| exerted.force).collect(),
+                    // About the inward normal.
+                    torsions: exerted().map(|exerted| -exerted.spin).collect(),
+                }
+            }
+            Balanced::No(twist) => {
+                let unit = twist / twist.norm();
+                let (a, w_O) =
+                    (unit.fixed_rows::<3>(0).into_owned(), unit.fixed_rows::<3>(3) / self.load.length);
+                // From the centre of mass to the contacts' centroid.
+                Certificate::SeparatingTwist { v_O: a + w_O.cross(&(center_O - self.load.p_OCm)), w_O }
+            }
+            Balanced::Unknown => Certificate::None,
+        }
+    }
+}
+
+fn centroid(grasp: &Grasp<'_>) -> Vec3 {
+    let sum: Vec3 = grasp.contacts().iter().map(|contact| contact.p_OC).sum();
+    sum / grasp.contacts().len().max(1) as f64
+}
+
+impl StabilityTest for Holding {
+    fn test(
+        &self,
+        grasp: &Grasp<'_>,
+        hint: &mut Hint,
+        context: &mut Context<'_>,
+    ) -> Result<Stability, CallError> {
+        context.count_call(Slot::StabilityTest);
+        Ok(self.judge(grasp, None, hint)?.0)
+    }
+
+    fn assess(
+        &self,
+        grasp: &Grasp<'_>,
+        _length: Option<f64>,
+        _center_O: Option<Vec3>,
+        _context: &mut Context<'_>,
+    ) -> Result<Assessment, CallError> {
+        let (stability, balanced) = self.judge(grasp, None, &mut Hint::default())?;
+        let bearings = self.bearings(grasp, None)?;
+        let share =
+            smallest_share(&bearings, &self.load.wanted(&grasp.g_O), 1.0).map(|smallest| smallest.share);
+        let lower = share.map_or(f64::NEG_INFINITY, |share| 1.0 - share);
+        let (margin_lower, margin_upper) = if stability.is_stable() {
+            (lower.max(0.0), 1.0)
+        } else {
+            (lower.clamp(-1e3, 0.0), lower.clamp(-1e3, 1.0))
+        };
+        let certificate = self.certificate(&bearings, &balanced, &centroid(grasp));
+        Ok(Assessment { stability, margin_lower, margin_upper, certificate })
+    }
+
+    fn criterion(&self) -> Criterion {
+        let HoldingSettings { weight, friction_factor, disturbance_force, disturbance_torque, .. } =
+            self.settings;
+        let max_normal_force = self.settings.max_normal_force;
+        Criterion::Holding(HoldLoad {
+            weight,
+            friction_factor,
+            disturbance_force,
+            disturbance_torque,
+            max_normal_force,
+        })
+    }
+
+    fn uses_efforts(&self) -> bool {
+        true
+    }
+
+    fn stable_without(
+        &self,
+        grasp: &Grasp<'_>,
+        finger: FingerIndex,
+        context: &mut Context<'_>,
+    ) -> Result<bool, CallError> {
+        context.count_call(Slot::StabilityTest);
+        Ok(self.judge(grasp, Some(finger), &mut Hint::default())?.0.is_stable())
+    }
+}
+
+regrasp_api::inventory::submit! {
+    Entry {
+        id: ID,
+        slots: &[Slot::StabilityTest],
+        summary: "Forces within the joints' efforts hold the object's weight and disturbances at a share of the friction: what `[hold]` asks for.",
+        references: &[
+            "Han, Trinkle, Li, Grasp analysis as linear matrix inequality problems, T-RA 2000",
+            "Boyd, Wegbreit, Fast computation of optimal contact forces, T-RO 2007",
+            "Boyd, Vandenberghe, Convex Optimization, Cambridge 2004, section 10.3",
+        ],
+        schema: HoldingSettings::schema,
+        check: check_settings::<HoldingSettings>,
+        build: Build::StabilityTest(|json, parts| {
+            let settings = HoldingSettings::from_json(json)?;
+            Ok(Box::new(Holding::new(settings, parts.object).map_err(BuildError::from)?))
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_outside_their_range_are_refused() {
+        for (json, key) in [
+            (r#"{"friction_factor": 0.01}"#, "friction_factor"),
+            (r#"{"disturbance_force": -1}"#, "disturbance_force"),
+            (r#"{"disturbance_torque": -1}"#, "disturbance_torque"),
+            (r#"{"max_normal_force": 0}"#, "max_normal_force"),
+            (r#"{"reserve": 0.9}"#, "reserve"),
+        ] {
+            let error = HoldingSettings::from_json(json).unwrap_err().to_string();
+            assert!(error.contains(key), "{error}");
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! `holding`: proofs of both verdicts, and what they must follow.
+#![allow(missing_docs)]
+
+mod support;
+
+use regrasp_api::*;
+use regrasp_stability_tests::{Holding, HoldingSettings};
+use support::with_context;
+
+/// A ball of 30 mm and 100 g.
+fn ball() -> ObjectModel {
+    let unit = 0.03 / 3.0_f64.sqrt();
+    let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+    let vertices: Vec<Vec3> = corners.iter().map(|corner| Vec3::from(*corner) * unit).collect();
+    let mesh = Mesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
+    let mut object = ObjectModel::new(mesh.expect("a tetrahedron is closed"), None, 0.1, 0.8);
+    object.p_OCm = Vec3::zeros();
+    object
+}
+
+fn test_with(settings: HoldingSettings) -> Holding {
+    Holding::new(settings, &ball()).unwrap()
+}
+
+#[derive(Clone, Debug)]
+struct Case {
+    contacts: Vec<(Vec3, f64, EffortBounds)>,
+    g_O: Vec3,
+}
+
+/// Contacts around a ball, three or four joints behind each, a weight in some direction.
+fn case(random: &mut Random, count: usize) -> Case {
+    let contact = |random: &mut Random| {
+        let joints = 3 + random.index(2);
+        let joint = |_| JointBound {
+            column_O: random.direction() * random.range(0.01, 0.1),
+            spin: 0.0,
+            limit: random.range(0.01, 0.3),
+        };
+        let bounds: Vec<JointBound> = (0..joints).map(joint).collect();
+        (random.direction(), random.range(0.3, 1.0), EffortBounds::from_joints(bounds))
+    };
+    let contacts = (0..count).map(|_| contact(random)).collect();
+    Case { contacts, g_O: random.direction() * random.range(1.0, 15.0) }
+}
+
+fn grasp(case: &Case, friction: f64, efforts: f64, weight: f64) -> Grasp<'static> {
+    let mut grasp = Grasp::new(case.g_O * weight);
+    for (i, (n_O, mu, bounds)) in case.contacts.iter().enumerate() {
+        let cone = Cone::Elliptic { mu: mu * friction, gamma: 0.0 };
+        let contact = GraspContact { finger: FingerIndex(i as u8), p_OC: n_O * 0.03, n_O: *n_O, cone };
+        grasp.push_bounded(contact, bounds.with_share(efforts));
+    }
+    grasp
+}
+
+fn verdict(test: &Holding, grasp: &Grasp<'_>) -> Stability {
+    with_context(|context| test.test(grasp, &mut Hint::default(), context)).unwrap()
+}
+
+#[test]
+fn a_yes_is_proved_by_forces_in_balance_within_cones_and_efforts() {
+    let test = test_with(HoldingSettings::default());
+    let mut random = Random::from_key(31, 0, 0, 0);
+    let mut found = [0; 2];
+    for k in 0..600 {
+        let case = case(&mut random, 3 + k % 3);
+        let grasp = grasp(&case, 1.0, 1.0, 1.0);
+        let assessed = with_context(|context| test.assess(&grasp, None, None, context)).unwrap();
+        assert_eq!(assessed.stability, verdict(&test, &grasp));
+        match assessed.certificate {
+            Certificate::InternalForce { forces_O, .. } => {
+                assert!(assessed.stability.is_stable());
+                found[0] += 1;
+                let mut sum = (case.g_O * 0.1, Vec3::zeros());
+                for (force, (n_O, mu, bounds)) in forces_O.iter().zip(&case.contacts) {
+                    let normal = -n_O.dot(force);
+                    assert!((force + n_O * normal).norm() <= 0.97 * mu * normal);
+                    let efforts = bounds.efforts_of(force, 0.0);
+                    assert!(efforts.iter().zip(bounds.joints()).all(|(e, j)| e.abs() <= 0.97 * j.limit));
+                    sum.0 += force;
+                    sum.1 += (n_O * 0.03).cross(force);
+                }
+                assert!(sum.0.norm() < 1e-8 && sum.1.norm() < 1e-9, "{sum:?}");
+            }
+            Certificate::SeparatingTwist { v_O, w_O } => {
+                assert_eq!(assessed.stability, Stability::Unstable);
+                found[1] += 1;
+                // The object gives way so that its weight does more work than the fingers at their limits can.
+                let centroid = case.contacts.iter().map(|c| c.0 * 0.03).sum::<Vec3>() / case.contacts.len() as f64;
+                let at = |p: Vec3| v_O + w_O.cross(&(p - centroid));
+                let work = -(case.g_O * 0.1).dot(&at(Vec3::zeros()));
+                let most: f64 = case.contacts.iter().map(|contact| most_power(contact, &at(contact.0 * 0.03))).sum();
+                assert!(work > most * (1.0 - 1e-6), "{k}: {work} {most}");
+            }
+            Certificate::None => assert_eq!(assessed.stability, Stability::Undecided),
+        }
+    }
+    assert!(found[0] > 80 && found[1] > 80, "{found:?}");
+}
+
+/// The most power of one contact's forces on the velocity of its point, from below: rays of its cone as far as the efforts let them go.
+fn most_power((n_O, mu, bounds): &(Vec3, f64, EffortBounds), velocity: &Vec3) -> f64 {
+    let tangent = any_orthogonal(n_O);
+    let other = n_O.cross(&tangent);
+    let mut most = 0.0_f64;
+    for k in 0..120 {
+        let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 120.0).sin_cos();
+        for part in 0..=6 {
+            let rim = 0.97 * mu * f64::from(part) / 6.0;
+            let force = -n_O + tangent * (rim * cos) + other * (rim * sin);
+            let efforts = bounds.efforts_of(&force, 0.0);
+            let shares = efforts.iter().zip(bounds.joints()).map(|(e, j)| e.abs() / (0.97 * j.limit));
+            let taken = shares.fold(1e-12, f64::max);
+            most = most.max(force.dot(velocity) / taken);
+        }
+    }
+    most
+}
+
+#[test]
+fn more_friction_stronger_joints_and_less_weight_never_lose_a_grasp() {
+    let test = test_with(HoldingSettings::default());
+    let mut random = Random::from_key(32, 0, 0, 0);
+    let mut held = 0;
+    for k in 0..400 {
+        let case = case(&mut random, 3 + k % 3);
+        if !verdict(&test, &grasp(&case, 1.0, 1.0, 1.0)).is_stable() {
+            continue;
+        }
+        held += 1;
+        for (friction, efforts, weight) in [(1.3, 1.0, 1.0), (1.0, 1.5, 1.0), (1.0, 1.0, 0.6), (1.2, 1.2, 0.9)] {
+            assert!(verdict(&test, &grasp(&case, friction, efforts, weight)).is_stable(), "{k}");
+        }
+    }
+    assert!(held > 50, "{held}");
+}
+
+#[test]
+fn hints_of_a_grasp_nearby_change_no_verdict() {
+    let test = test_with(HoldingSettings { disturbance_force: 0.05, ..Default::default() });
+    let mut random = Random::from_key(33, 0, 0, 0);
+    for k in 0..80 {
+        let (mut case, mut hint) = (case(&mut random, 3 + k % 3), Hint::default());
+        for _ in 0..6 {
+            let grasp = grasp(&case, 1.0, 1.0, 1.0);
+            let warm = with_context(|context| test.test(&grasp, &mut hint, context)).unwrap();
+            assert_eq!(warm.is_stable(), verdict(&test, &grasp).is_stable(), "{k}");
+            case.g_O += random.direction() * 0.05;
+            case.contacts.iter_mut().for_each(|c| c.0 = (c.0 + random.direction() * 0.01).normalize());
+        }
+    }
+}
+
+#[test]
+fn disturbances_ask_for_more_than_the_weight() {
+    let (calm, shaken) = (HoldingSettings::default(), HoldingSettings { disturbance_force: 0.5, ..Default::default() });
+    let [calm, shaken] = [calm, shaken].map(test_with);
+    let mut random = Random::from_key(34, 0, 0, 0);
+    let (mut both, mut calm_alone) = (0, 0);
+    for k in 0..300 {
+        let grasp = grasp(&case(&mut random, 3 + k % 3), 1.0, 1.0, 1.0);
+        match [&calm, &shaken].map(|test| verdict(test, &grasp).is_stable()) {
+            [true, true] => both += 1,
+            [true, false] => calm_alone += 1,
+            [false, shaken] => assert!(!shaken, "{k}"),
+        }
+    }
+    assert!(both > 10 && calm_alone > 10, "{both} {calm_alone}");
+}
