@@ -1,7 +1,7 @@
 //! What a plan's grasps hold, in words.
 
-use crate::verify::place_text;
 use regrasp::api::Problem;
+use regrasp::page::place_text;
 use regrasp::plan::Holds;
 
 /// What a plan's grasps hold, and one line where they cannot carry the object.

@@ -4,7 +4,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// Carry out a plan in a physics simulation: does the object arrive?
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(after_help = "\
 The object is free, under the gravity that the plan's scenario gives (0, 0, -9.81 m/s² in the hand's frame where it gave none), and held by friction alone. Each joint is \
 driven by a motor with a stiffness, a damping and the joint's effort limit; it follows the plan, and what the grasp needs is fed forward: in every state the \
@@ -42,6 +42,10 @@ pub struct ReplayArgs {
     /// Most normal force of one contact (N); by default what the plan claims to hold by, or else what the joints can.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = number::<0, 10_000>)]
     pub grip: Option<f64>,
+    /// Replay in many worlds instead of one, friction, mass, stiffness and slowdown other than planned, and hold what arrives against what the plan
+    /// promises.
+    #[arg(long, conflicts_with_all = ["output", "friction_scale", "mass_scale", "stiffness_scale", "slowdown"])]
+    pub sweep: bool,
     /// Gravity in the hand's frame (m/s²), such as 0,0,9.81; by default the scenario's.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     pub gravity: Option<[f64; 3]>,
@@ -76,6 +80,8 @@ pub use simulated::run;
 
 #[cfg(feature = "rapier")]
 mod simulated;
+#[cfg(feature = "rapier")]
+mod sweep;
 
 #[cfg(test)]
 mod tests {

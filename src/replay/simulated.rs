@@ -21,6 +21,9 @@ pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
     outputs::check(&[args.plan.clone()], wished.as_slice(), args.overwrite)?;
     let standard = args.output.as_deref().is_some_and(outputs::is_standard);
     let plan = regrasp::plan::read(&args.plan).map_err(Failure::refused)?;
+    if args.sweep {
+        return super::sweep::run(args, &plan);
+    }
     let told = Told::new(args, &plan)?;
     if let Some(path) = args.output.as_ref().filter(|_| !standard) {
         let json = told.json(true);
@@ -38,17 +41,17 @@ pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
 }
 
 /// A replay with what a report about it mentions.
-struct Told<'a> {
+pub(super) struct Told<'a> {
     args: &'a ReplayArgs,
     plan: &'a Plan,
     motion: Motion,
     problem: Problem,
     settings: ReplaySettings,
-    report: ReplayReport,
+    pub(super) report: ReplayReport,
 }
 
 impl<'a> Told<'a> {
-    fn new(args: &'a ReplayArgs, plan: &'a Plan) -> Result<Self, Failure> {
+    pub(super) fn new(args: &'a ReplayArgs, plan: &'a Plan) -> Result<Self, Failure> {
         if plan.claims.contact.cone.is_some_and(|cone| cone.gamma > 0.0) {
             return Err(Failure::bad_input(format!("{}: {}", args.plan.display(), PhysicsError::Torsion)));
         }

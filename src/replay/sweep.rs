@@ -30,7 +30,11 @@ pub fn run(args: &ReplayArgs, plan: &Plan) -> Result<(), Failure> {
         worlds.push(World { args, promised, arrives });
     }
     let broken = worlds.iter().filter(|world| world.promised == Some(true) && !world.arrives).count();
-    if args.json { say_json(&told(&worlds, broken))? } else { say(&text(args, &worlds, broken))? }
+    if args.json {
+        say_json(&told(&worlds, broken))?
+    } else {
+        say(&text(args, &worlds, broken))?
+    }
     if broken == 0 {
         return Ok(());
     }
@@ -75,7 +79,8 @@ fn told(worlds: &[World], broken: usize) -> Value {
 }
 
 fn text(args: &ReplayArgs, worlds: &[World], broken: usize) -> String {
-    let mut table = Table::new(">>>><<", &["friction", "mass", "stiffness", "slowdown", "promised", "arrives"]);
+    let mut table =
+        Table::new(">>>><<", &["friction", "mass", "stiffness", "slowdown", "promised", "arrives"]);
     for World { args, promised, arrives } in worlds {
         let scales = [args.friction_scale, args.mass_scale, args.stiffness_scale, args.slowdown];
         let promised = match promised {

@@ -5,6 +5,7 @@ mod command_line;
 mod compare;
 mod desk;
 mod golden;
+mod hold;
 mod json_errors;
 mod outputs;
 mod wording;

@@ -2,7 +2,7 @@
 
 use regrasp_api::{
     Assessment, Build, BuildError, CallError, Certificate, Context, Criterion, Entry, FingerIndex, Grasp,
-    Hint, HoldLoad, ObjectModel, Settings, SettingsError, Slot, Stability, StabilityTest, Vec3, check_range,
+    Hint, HoldLoad, ObjectModel, Settings, SettingsError, Slot, Stability, StabilityTest, Vec3,
     check_settings,
 };
 use regrasp_physics::{Balanced, Bearings, HeldLoad, Press, smallest_share};
@@ -17,22 +17,22 @@ const ID: &str = "stability-test/holding";
 pub struct HoldingSettings {
     /// Whether the object's weight must be held.
     pub weight: bool,
-    /// The share of the friction that the plan claims to rely on (no unit); the planner hands the test cones of that friction. 0.05 to 1, default 0.8.
-    #[schemars(range(min = 0.05, max = 1.0))]
+    /// The share of the friction that the plan claims to rely on (no unit); the planner hands the test cones of that friction. By default 0.8.
+    #[schemars(range(min = 0.05, max = 1.0), extend("x-unit" = "1"))]
     pub friction_factor: f64,
-    /// Largest disturbing force at the centre of mass, in any direction (N), 0 to 1e4, default 0: none.
-    #[schemars(range(min = 0.0, max = 1e4))]
+    /// Largest disturbing force at the centre of mass, in any direction (N); 0 for none.
+    #[schemars(range(min = 0.0, max = 1e4), extend("x-unit" = "N"))]
     pub disturbance_force: f64,
-    /// Largest disturbing torque, about any axis (N·m), 0 to 1e3, default 0: none.
-    #[schemars(range(min = 0.0, max = 1e3))]
+    /// Largest disturbing torque, about any axis (N·m); 0 for none.
+    #[schemars(range(min = 0.0, max = 1e3), extend("x-unit" = "N·m"))]
     pub disturbance_torque: f64,
-    /// Largest normal force of one contact (N), 1e-2 to 1e4; where absent the joints' efforts alone bound it.
-    #[schemars(range(min = 1e-2, max = 1e4))]
+    /// Largest normal force of one contact (N); where absent the joints' efforts alone bound it.
+    #[schemars(range(min = 1e-2, max = 1e4), extend("x-unit" = "N"))]
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(example = 10.0)]
     pub max_normal_force: Option<f64>,
-    /// The share of friction and efforts that is kept back (no unit), so that what holds at a plan's states holds between them too; 0 to 0.5, default 0.03.
-    #[schemars(range(min = 0.0, max = 0.5))]
+    /// The share of friction and efforts that is kept back (no unit), so that what holds at a plan's states holds between them too.
+    #[schemars(range(min = 0.0, max = 0.5), extend("x-unit" = "1"))]
     pub reserve: f64,
 }
 
@@ -49,15 +49,7 @@ impl Default for HoldingSettings {
     }
 }
 
-impl Settings for HoldingSettings {
-    fn validate(&self) -> Result<(), SettingsError> {
-        check_range("friction_factor", self.friction_factor, 0.05, 1.0)?;
-        check_range("disturbance_force", self.disturbance_force, 0.0, 1e4)?;
-        check_range("disturbance_torque", self.disturbance_torque, 0.0, 1e3)?;
-        self.max_normal_force.map_or(Ok(()), |most| check_range("max_normal_force", most, 1e-2, 1e4))?;
-        check_range("reserve", self.reserve, 0.0, 0.5)
-    }
-}
+impl Settings for HoldingSettings {}
 
 /// Stable where contact forces inside the cones, with joint efforts Jᵀf within the limits, hold the object's weight and every disturbance of a set.
 ///

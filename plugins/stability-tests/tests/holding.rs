@@ -87,10 +87,12 @@ fn a_yes_is_proved_by_forces_in_balance_within_cones_and_efforts() {
                 assert_eq!(assessed.stability, Stability::Unstable);
                 found[1] += 1;
                 // The object gives way so that its weight does more work than the fingers at their limits can.
-                let centroid = case.contacts.iter().map(|c| c.0 * 0.03).sum::<Vec3>() / case.contacts.len() as f64;
+                let centroid =
+                    case.contacts.iter().map(|c| c.0 * 0.03).sum::<Vec3>() / case.contacts.len() as f64;
                 let at = |p: Vec3| v_O + w_O.cross(&(p - centroid));
                 let work = -(case.g_O * 0.1).dot(&at(Vec3::zeros()));
-                let most: f64 = case.contacts.iter().map(|contact| most_power(contact, &at(contact.0 * 0.03))).sum();
+                let most: f64 =
+                    case.contacts.iter().map(|contact| most_power(contact, &at(contact.0 * 0.03))).sum();
                 assert!(work > most * (1.0 - 1e-6), "{k}: {work} {most}");
             }
             Certificate::None => assert_eq!(assessed.stability, Stability::Undecided),
@@ -129,7 +131,9 @@ fn more_friction_stronger_joints_and_less_weight_never_lose_a_grasp() {
             continue;
         }
         held += 1;
-        for (friction, efforts, weight) in [(1.3, 1.0, 1.0), (1.0, 1.5, 1.0), (1.0, 1.0, 0.6), (1.2, 1.2, 0.9)] {
+        for (friction, efforts, weight) in
+            [(1.3, 1.0, 1.0), (1.0, 1.5, 1.0), (1.0, 1.0, 0.6), (1.2, 1.2, 0.9)]
+        {
             assert!(verdict(&test, &grasp(&case, friction, efforts, weight)).is_stable(), "{k}");
         }
     }
@@ -154,7 +158,8 @@ fn hints_of_a_grasp_nearby_change_no_verdict() {
 
 #[test]
 fn disturbances_ask_for_more_than_the_weight() {
-    let (calm, shaken) = (HoldingSettings::default(), HoldingSettings { disturbance_force: 0.5, ..Default::default() });
+    let (calm, shaken) =
+        (HoldingSettings::default(), HoldingSettings { disturbance_force: 0.5, ..Default::default() });
     let [calm, shaken] = [calm, shaken].map(test_with);
     let mut random = Random::from_key(34, 0, 0, 0);
     let (mut both, mut calm_alone) = (0, 0);

@@ -17,7 +17,7 @@ pub struct HoldDescription {
     pub disturbance: [f64; 2],
     /// Largest normal force of one contact (N), for fragile objects; where absent the joints' efforts alone bound it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1e-2, max = 1e4))]
+    #[schemars(range(min = 1e-2, max = 1e4), extend("x-unit" = "N"))]
     #[schemars(example = 10.0)]
     pub max_normal_force: Option<f64>,
 }
