@@ -66,6 +66,9 @@ pub struct PlanArgs {
     /// Seed of all random choices: the same seed gives the same plan, on any number of threads.
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub seed: u64,
+    /// Choose plugins and settings that belong together, `paper` or `default`; `--use` and `--set` change them further.
+    #[arg(long, value_name = "NAME")]
+    pub preset: Option<String>,
     /// Fill a slot with another plugin; can be repeated.
     #[arg(long = "use", value_name = "SLOT=ID")]
     pub uses: Vec<String>,

@@ -96,6 +96,7 @@ fn request(args: &CompareArgs, registry: &Registry) -> Result<(Vec<Scenario>, Dr
         },
     };
     for scenario in &mut asked.scenarios {
+        overrides::apply_preset(&mut scenario.choices, args.preset.as_deref())?;
         overrides::apply_plugins(&mut scenario.choices, &args.uses, &args.sets)?;
         overrides::limit_nodes(scenario, args.max_nodes.or(asked.max_nodes));
     }

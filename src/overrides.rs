@@ -9,11 +9,26 @@ use serde_json::Value;
 
 /// Applies the changes; `--use` before `--set`, whatever their order.
 pub fn apply(scenario: &mut Scenario, args: &PlanArgs) -> Result<(), Failure> {
+    apply_preset(&mut scenario.choices, args.preset.as_deref())?;
     apply_plugins(&mut scenario.choices, &args.uses, &args.sets)?;
     limit_nodes(scenario, args.max_nodes);
     let budget = &mut scenario.problem.limits.budget;
     budget.time_limit = args.time_limit.or(budget.time_limit);
     Ok(())
+}
+
+/// Applies `--preset`, which comes before `--use` and `--set`.
+pub fn apply_preset(choices: &mut Choices, name: Option<&str>) -> Result<(), Failure> {
+    let Some(name) = name else { return Ok(()) };
+    let preset = regrasp::host::preset(name).map_err(Failure::refused)?;
+    preset.apply(choices);
+    Ok(())
+}
+
+/// What a preset sets, for a person: a line each, with the place in the source that it stands for.
+pub fn preset_lines(name: &str) -> Vec<String> {
+    let lines = regrasp::host::preset(name).map(|preset| preset.lines).unwrap_or_default();
+    lines.iter().map(|line| format!("{line}  ({})", line.source)).collect()
 }
 
 /// Applies `--use` and then `--set`.

@@ -18,6 +18,9 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     let mut scenario = scenario::load(&args.scenario, &registry).map_err(Failure::refused)?;
     remark(&scenario.remarks);
     overrides::apply(&mut scenario, args)?;
+    if let Some(name) = &args.preset {
+        remark(&[format!("preset `{name}` sets{}", listed(&overrides::preset_lines(name)))]);
+    }
     let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::refused)?;
     let watch = Watch::start(scenario.problem.limits.budget.time_limit);
     let line = Line::new();
@@ -76,6 +79,14 @@ fn audited(args: &PlanArgs, setup: &Setup<'_>, options: &RunOptions<'_>) -> Resu
         _ => String::new(),
     };
     ran.map_err(|error| Failure::bad_input(format!("{error}{saved}")))
+}
+
+/// The lines of a list, one below the other.
+fn listed(lines: &[String]) -> String {
+    match lines.is_empty() {
+        true => " nothing".into(),
+        false => lines.iter().map(|line| format!("\n  {line}")).collect(),
+    }
 }
 
 /// Tells on standard error what was chosen while the scenario was read.

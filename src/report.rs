@@ -44,6 +44,7 @@ impl Summary<'_> {
             "generated_nodes": statistics.generated_nodes,
             "graph_nodes": statistics.graph_nodes,
             "components": statistics.components,
+            "roadmap": statistics.roadmap,
             "transfers": statistics.transfers,
             "regrasps": statistics.regrasps,
             "regrasps_before_smoothing": statistics.regrasps_before_smoothing,

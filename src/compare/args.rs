@@ -41,6 +41,9 @@ pub struct CompareArgs {
     /// The first of the seeds [default: 0].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 0, { u64::MAX - MOST_SEEDS }>)]
     pub first_seed: Option<u64>,
+    /// Choose plugins and settings of all variants that belong together, `paper` or `default`; `--use`, `--set` and `--vary` change them.
+    #[arg(long, value_name = "NAME")]
+    pub preset: Option<String>,
     /// Fill a slot of all variants with another plugin; can be repeated.
     #[arg(long = "use", value_name = "SLOT=ID")]
     pub uses: Vec<String>,
@@ -79,7 +82,7 @@ pub struct CompareArgs {
     pub shard: Option<Shard>,
     /// Join the parts in these folders.
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = [
-        "scenarios", "suite", "study", "vary", "seeds", "first_seed", "uses", "sets", "load", "time_limit", "max_nodes",
+        "scenarios", "suite", "study", "vary", "seeds", "first_seed", "preset", "uses", "sets", "load", "time_limit", "max_nodes",
         "threads", "skip_unsupported", "shard",
     ])]
     pub merge: Vec<PathBuf>,
@@ -104,6 +107,7 @@ impl CompareArgs {
         self.vary.iter().for_each(|text| option("vary", Some(text.clone())));
         option("seeds", self.seeds.map(|seeds| seeds.to_string()));
         option("first-seed", self.first_seed.map(|seed| seed.to_string()));
+        option("preset", self.preset.clone());
         self.uses.iter().for_each(|text| option("use", Some(text.clone())));
         self.sets.iter().for_each(|text| option("set", Some(text.clone())));
         self.libraries.load.iter().for_each(|path| option("load", Some(path.display().to_string())));

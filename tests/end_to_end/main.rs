@@ -8,4 +8,5 @@ mod golden;
 mod hold;
 mod json_errors;
 mod outputs;
+mod search;
 mod wording;

@@ -53,8 +53,8 @@ impl GraphStrategy for Bandit {
         if graph.joined() {
             return Ok(Action::Query);
         }
-        let (generated, most) = graph.generated();
-        if generated >= most {
+        let (samples, most) = graph.samples();
+        if samples >= most {
             return Ok(Action::Stop);
         }
         let node = NodeId(context.random.index(graph.node_count()) as u32);

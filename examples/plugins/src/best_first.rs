@@ -55,8 +55,8 @@ impl GraphStrategy for BestFirst {
         if graph.joined() {
             return Ok(Action::Query);
         }
-        let (generated, most) = graph.generated();
-        let Some(node) = best(graph).filter(|_| generated < most) else { return Ok(Action::Stop) };
+        let (samples, most) = graph.samples();
+        let Some(node) = best(graph).filter(|_| samples < most) else { return Ok(Action::Stop) };
         if let Some(bridge) = bridge(graph, node) {
             return Ok(bridge);
         }

@@ -4,8 +4,8 @@ use crate::guard::{Guard, Guardable};
 use regrasp_api::{
     Action, Assessment, CallError, ClosedChainSampler, Cone, Configuration, Contact, ContactModel, Context,
     Criterion, FingerIndex, FingerSet, GraphStrategy, GraphView, Grasp, Hint, LocalPlanner, MAX_FINGERS,
-    Path, PerFinger, Pose, PoseRequest, Projection, Random, Reached, Stability, StabilityTest, SurfaceParam,
-    SurfacePath, Target, Task, Vec3, with_roles,
+    Path, PerFinger, Pose, PoseRequest, Projection, Random, Reached, SearchPolicy, Stability, StabilityTest,
+    SurfaceParam, SurfacePath, Target, Task, Vec3, with_roles,
 };
 
 macro_rules! guardable {
@@ -154,5 +154,9 @@ impl LocalPlanner for Guard<dyn LocalPlanner> {
 impl GraphStrategy for Guard<dyn GraphStrategy> {
     fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError> {
         self.call(|strategy| strategy.next(graph, context))
+    }
+
+    fn policy(&self) -> SearchPolicy {
+        self.value(|strategy| strategy.policy(), SearchPolicy::default)
     }
 }

@@ -171,8 +171,8 @@ impl GraphView for GuardedService<'_, dyn GraphView + '_> {
         self.0.node_count()
     }
 
-    fn generated(&self) -> (usize, usize) {
-        self.0.generated()
+    fn samples(&self) -> (usize, usize) {
+        self.0.samples()
     }
 
     fn start(&self) -> NodeId {

@@ -71,7 +71,7 @@ fn a_call_that_can_fail_fails_with_the_panics_message() {
         fn node_count(&self) -> usize {
             0
         }
-        fn generated(&self) -> (usize, usize) {
+        fn samples(&self) -> (usize, usize) {
             (0, 0)
         }
         fn start(&self) -> NodeId {

@@ -27,20 +27,20 @@ struct Liar {
 impl GraphStrategy for Liar {
     fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError> {
         let nodes = graph.node_count();
-        let (generated, most) = graph.generated();
+        let (samples, most) = graph.samples();
         if self.lie != Lie::Nothing {
             context.count_call(Slot::GraphStrategy);
         }
         match self.lie {
-            Lie::ExtendsNobody if nodes % 17 == 16 && generated < most && context.random.unit() < 0.5 => {
+            Lie::ExtendsNobody if nodes % 17 == 16 && samples < most && context.random.unit() < 0.5 => {
                 Ok(Action::Extend(NodeId(nodes as u32), Vicinity::default(), Link::None))
             }
             Lie::NeverAsks if graph.joined() => {
-                Ok(if generated < most { Action::Explore(Link::None) } else { Action::Stop })
+                Ok(if samples < most { Action::Explore(Link::None) } else { Action::Stop })
             }
-            Lie::KnowsNoBudget if generated >= most => Ok(Action::Explore(Link::Components)),
-            Lie::GivesUp if !graph.joined() && generated > most / 2 => Ok(Action::Stop),
-            Lie::TriesAgain if !graph.joined() && generated < most && context.random.unit() < 0.8 => {
+            Lie::KnowsNoBudget if samples >= most => Ok(Action::Explore(Link::Components)),
+            Lie::GivesUp if !graph.joined() && samples > most / 2 => Ok(Action::Stop),
+            Lie::TriesAgain if !graph.joined() && samples < most && context.random.unit() < 0.8 => {
                 Ok(Action::Connect(graph.start(), graph.goals()[0], EdgeKind::Grasp))
             }
             Lie::OnlyAtHome if std::thread::current().id() != self.home => Ok(Action::Stop),

@@ -64,6 +64,11 @@ impl Choices {
         table.insert(key.to_owned(), value);
     }
 
+    /// Takes one setting back to the plugin's default; a dot in `key` leads into a table, which goes too once it is empty.
+    pub fn unset(&mut self, slot: Slot, key: &str) {
+        unset(&mut self.choices[slot as usize].settings, key);
+    }
+
     /// The same choices with full ids and complete settings, each accepted by its plugin.
     pub fn resolve(&self, registry: &Registry) -> Result<Self, HostError> {
         let mut resolved = self.clone();
@@ -77,6 +82,18 @@ impl Choices {
     pub fn resolve_slot(mut self, registry: &Registry, slot: Slot) -> Result<Self, HostError> {
         self.choices[slot as usize] = resolve_choice(registry, slot, self.choice(slot))?;
         Ok(self)
+    }
+}
+
+fn unset(table: &mut Map<String, Value>, key: &str) {
+    let Some((head, rest)) = key.split_once('.') else {
+        table.remove(key);
+        return;
+    };
+    let Some(inner) = table.get_mut(head).and_then(Value::as_object_mut) else { return };
+    unset(inner, rest);
+    if inner.is_empty() {
+        table.remove(head);
     }
 }
 

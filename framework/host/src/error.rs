@@ -28,6 +28,16 @@ pub enum HostError {
         /// Slots that resemble it.
         near: Vec<String>,
     },
+    /// No preset has this name.
+    #[error("there is no preset `{name}`; {}", or_all(.near, .known))]
+    UnknownPreset {
+        /// The name that was given.
+        name: String,
+        /// Presets that resemble it.
+        near: Vec<String>,
+        /// Every preset.
+        known: Vec<String>,
+    },
     /// No plugin has this id in this slot.
     #[error("there is no plugin `{id}` for `{}`; {}{}", .slot.name(), or_all(.near, .known), or_load(.near))]
     UnknownPlugin {
@@ -96,6 +106,11 @@ impl Refuse for HostError {
             Self::UnknownSlot { name, near } => Refusal::new("unknown-slot", self)
                 .value(name)
                 .range(slot_names().join(", "))
+                .remedy(did_you_mean(near)),
+            Self::UnknownPreset { name, near, known } => Refusal::new("unknown-preset", self)
+                .key("preset")
+                .value(name)
+                .range(known.join(", "))
                 .remedy(did_you_mean(near)),
             Self::UnknownPlugin { slot, id, near, known } => Refusal::new("unknown-plugin", self)
                 .key(slot.name())

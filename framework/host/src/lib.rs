@@ -7,6 +7,7 @@ mod choice;
 mod error;
 mod load;
 mod plugin_set;
+mod preset;
 mod registry;
 mod shelf;
 #[cfg(test)]
@@ -16,4 +17,5 @@ pub use choice::*;
 pub use error::*;
 pub use load::*;
 pub use plugin_set::*;
+pub use preset::*;
 pub use registry::*;

@@ -9,12 +9,14 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Statistics {
-    /// Nodes that the search generated.
+    /// Nodes that the search generated: samples that gave a grasp, kept or not; start and goals are not among them.
     pub generated_nodes: usize,
-    /// Nodes of the final manipulation graph.
+    /// Nodes of the final manipulation graph: those that were kept, and the grasps at start and goals.
     pub graph_nodes: usize,
-    /// Components of the final manipulation graph.
+    /// Components of the final manipulation graph, by edges of every kind.
     pub components: usize,
+    /// The graph's part in GS_n, and what became of it.
+    pub roadmap: RoadmapStatistics,
     /// Transfers of the plan.
     pub transfers: usize,
     /// Regrasps of the plan.
@@ -25,6 +27,28 @@ pub struct Statistics {
     pub plugins: BTreeMap<Slot, PluginStatistics>,
     /// Wall time by phase, such as `search` and `smoothing`, and by slot where it was measured (s).
     pub time_s: BTreeMap<String, f64>,
+}
+
+/// What the search found out about GS_n, and what the plan uses of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RoadmapStatistics {
+    /// Generated nodes that stayed in the graph.
+    pub kept_nodes: usize,
+    /// Components of the graph's nodes by paths in GS_n alone.
+    pub grasp_components: usize,
+    /// Nodes in the largest of them.
+    pub largest_grasp_component: usize,
+    /// Paths in GS_n on the way that was found.
+    pub used_grasp_edges: usize,
+    /// Connections outside of GS_n on that way.
+    pub used_transfer_edges: usize,
+    /// Paths in GS_n that were to be decomposed into transfers and regrasps.
+    pub decompositions: usize,
+    /// Those of them that could not be.
+    pub failed_decompositions: usize,
+    /// How often a search was begun anew; generated nodes are those of all rounds, the graph that of the last.
+    pub restarts: usize,
 }
 
 /// What one plugin did.

@@ -1,8 +1,8 @@
 //! Which configurations may become nodes.
 
 use regrasp_api::{
-    Admissible, CallError, Configuration, Context, FingerIndex, FingerSet, Grasp, LoneFinger, Reason, Task,
-    TipRule,
+    Admissible, Admission, CallError, Configuration, Contact, Context, FingerIndex, FingerSet, Grasp,
+    LoneFinger, Reason, Task, TipRule,
 };
 
 /// Admits configurations that can be left by transfers and regrasps.
@@ -12,6 +12,18 @@ use regrasp_api::{
 /// from the object. Otherwise a node is a dead end.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Leavable;
+
+/// Admits every configuration that is free of collisions and stable, as the paper has it (section IV.B).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stable;
+
+/// What admits the nodes of a search.
+pub fn admission(admission: Admission) -> &'static dyn Admissible {
+    match admission {
+        Admission::Stable => &Stable,
+        _ => &Leavable,
+    }
+}
 
 impl Admissible for Leavable {
     fn admit_finger(
@@ -25,13 +37,10 @@ impl Admissible for Leavable {
         let lone = task.clearance.lone_finger(finger, q, placed);
         let Some(contact) = q.contacts[finger] else {
             let free = lone.free(&q.joints[finger], TipRule::Clear(task.resolution.clearance)).is_ok();
-            return Ok(if free { None } else { Some(Reason::Collision) });
+            return Ok((!free).then_some(Reason::Collision));
         };
-        if task.surface.edge_distance(&contact) < task.resolution.edge_margin {
-            return Ok(Some(Reason::Edge));
-        }
-        if lone.free(&q.joints[finger], TipRule::Touches).is_err() {
-            return Ok(Some(Reason::Collision));
+        if let Some(reason) = touching(task, q, (finger, &contact), &*lone) {
+            return Ok(Some(reason));
         }
         Ok(if retreats(task, q, finger, &*lone) { None } else { Some(Reason::Retreat) })
     }
@@ -43,6 +52,10 @@ impl Admissible for Leavable {
         context: &mut Context<'_>,
     ) -> Result<Option<Reason>, CallError> {
         let grasp = task.grasp(q, FingerSet::first(q.contacts.len()));
+        if grasp.contacts().len() <= task.contact_model.fewest_contacts() {
+            // None of its fingers can ever be lifted: it is left by setting down another one.
+            return Stable.admit_grasp(task, q, context);
+        }
         let enough = grasp.contacts().len().saturating_sub(1);
         // More contacts never make a grasp unstable: where n - 1 subsets are stable the whole is.
         if task.stability.liftable(&grasp, enough, context)?.len() >= enough.max(1) {
@@ -95,6 +108,49 @@ impl Admissible for Holdable {
         let holds = holds_in_transfers(task, q, &grasp, context)?;
         Ok(if holds { None } else { Some(Reason::Stability) })
     }
+}
+
+impl Admissible for Stable {
+    fn admit_finger(
+        &self,
+        task: &Task<'_>,
+        q: &Configuration,
+        finger: FingerIndex,
+        placed: FingerSet,
+        _context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError> {
+        let lone = task.clearance.lone_finger(finger, q, placed);
+        let Some(contact) = q.contacts[finger] else {
+            let free = lone.free(&q.joints[finger], TipRule::Clear(task.resolution.clearance)).is_ok();
+            return Ok((!free).then_some(Reason::Collision));
+        };
+        Ok(touching(task, q, (finger, &contact), &*lone))
+    }
+
+    fn admit_grasp(
+        &self,
+        task: &Task<'_>,
+        q: &Configuration,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Reason>, CallError> {
+        let grasp = task.grasp(q, FingerSet::first(q.contacts.len()));
+        let stable = task.stability.test(&grasp, &mut Default::default(), context)?.is_stable()
+            && holds_in_transfers(task, q, &grasp, context)?;
+        Ok((!stable).then_some(Reason::Stability))
+    }
+}
+
+/// Why a finger may not touch the object at its contact: too near to an edge, or something in its way.
+fn touching(
+    task: &Task<'_>,
+    q: &Configuration,
+    (finger, contact): (FingerIndex, &Contact),
+    lone: &dyn LoneFinger,
+) -> Option<Reason> {
+    if task.surface.edge_distance(contact) < task.resolution.edge_margin {
+        return Some(Reason::Edge);
+    }
+    lone.free(&q.joints[finger], TipRule::Touches).is_err().then_some(Reason::Collision)
 }
 
 /// Whether the grasp that is stable at rest is still so while the object moves.

@@ -3,7 +3,8 @@
 use crate::meet;
 use crate::search::Search;
 use crate::session::Call;
-use regrasp_api::{CallError, EdgeId, EdgeKind, EdgeVerdict, Effect, NodeId};
+use crate::steps::transfer_then_regrasp;
+use regrasp_api::{CallError, Connection, EdgeId, EdgeKind, EdgeVerdict, Effect, NodeId};
 
 impl Search<'_> {
     /// Tries an edge of the given kind between two nodes.
@@ -14,6 +15,25 @@ impl Search<'_> {
             EdgeKind::Grasp => self.connect_inside(a, b),
             EdgeKind::TransferRegrasp => self.connect_outside(a, b),
         }
+    }
+
+    /// Algorithm 3 as a whole: tries the nearest node of each component but that of `node`.
+    pub fn connect_all(&mut self, node: NodeId, kind: EdgeKind) -> Result<Effect, CallError> {
+        let mut effect = Effect::Failed;
+        for other in self.nearest_untried(node, kind) {
+            // An edge found on the way may have joined this component too.
+            if self.state.graph.component(other) != self.state.graph.component(node)
+                && self.connect(node, other, kind)? == Effect::Done
+            {
+                effect = Effect::Done;
+            }
+        }
+        Ok(effect)
+    }
+
+    /// The nearest node of each other component that was not tried with `node`.
+    pub fn nearest_untried(&self, node: NodeId, kind: EdgeKind) -> Vec<NodeId> {
+        self.nearest_of_each_component(node, |other| !self.state.graph.was_tried(node, other, kind))
     }
 
     /// By a path in GS_n.
@@ -31,7 +51,10 @@ impl Search<'_> {
     fn connect_outside(&mut self, a: NodeId, b: NodeId) -> Result<Effect, CallError> {
         let (from, to) = (self.state.graph.node(a), self.state.graph.node(b));
         let key = (Call::TransferRegrasp, u64::from(a.0), u64::from(b.0));
-        let found = self.session.counted(&self.leg.task, key, |work| meet::connect(work, from, to));
+        let found = self.session.counted(&self.leg.task, key, |work| match self.leg.policy.connection {
+            Connection::OneEnd => transfer_then_regrasp(work, from, to),
+            _ => meet::connect(work, from, to),
+        });
         self.state.tally.add(&found.tally);
         let Some(segments) = found.result? else { return Ok(Effect::Failed) };
         let graph = &mut self.state.graph;

@@ -1,12 +1,13 @@
 //! Start and goals: grasps that are given are checked, grasps that are not given are found.
 
+use crate::admissible::Stable;
 use crate::error::{End, PlanError, explain};
 use crate::foresight::outlook;
 use crate::session::{Call, Session, Work};
 use crate::shortest_path::Length;
 use regrasp_api::{
-    CallError, Configuration, Contact, FingerGrasp, FingerIndex, FingerJoints, FingerSet, PerFinger, Pose,
-    PoseRequest, Tally, Task,
+    Admissible, CallError, Configuration, Contact, FingerGrasp, FingerIndex, FingerJoints, FingerSet,
+    PerFinger, Pose, PoseRequest, Tally, Task,
 };
 
 /// How far a given contact point may lie from the surface (m).
@@ -103,6 +104,19 @@ fn stable(work: &mut Work<'_>, q: &Configuration) -> Result<bool, CallError> {
     let grasp = task.grasp_with_friction(q, q.holding(), task.object.friction);
     Ok(!grasp.contacts().is_empty()
         && task.stability.test(&grasp, &mut Default::default(), &mut work.context)?.is_stable())
+}
+
+/// The contacts of `from` at another pose of the object, if its fingers reach them there, nothing is in the way and the grasp is stable.
+///
+/// Nobody asks whether its fingers can be lifted: an end need not be left by regrasps.
+pub(crate) fn same_grasp(
+    work: &mut Work<'_>,
+    from: &Configuration,
+    X_HO: &Pose,
+) -> Result<Option<Configuration>, CallError> {
+    let Work { plugins, task, context } = work;
+    let Some(q) = plugins.sampler.close(task, X_HO, &from.contacts, from, context)? else { return Ok(None) };
+    Ok(Stable.admit(task, &q, context)?.is_none().then_some(q))
 }
 
 /// A warning where a given start or goal would not be admitted as a node.

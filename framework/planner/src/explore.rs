@@ -6,9 +6,6 @@ use regrasp_api::{
     CallError, Configuration, EdgeKind, EdgeVerdict, Effect, Link, NodeId, Origin, PoseRequest, Vicinity,
 };
 
-/// After this many more samples another grasp is looked for at a goal that is given by its pose alone.
-const SAMPLES_PER_GOAL: usize = 10;
-
 impl Search<'_> {
     /// A new node of GS_n, joined to the components that a path in GS_n reaches.
     pub fn explore(&mut self, link: Link) -> Result<Effect, CallError> {
@@ -58,26 +55,35 @@ impl Search<'_> {
     fn add(&mut self, q: Configuration, origin: Origin, link: Link) -> Result<Effect, CallError> {
         self.budget.generated += 1;
         let node = self.state.graph.add_node(q, origin);
+        let mut keep = true;
         match link {
-            Link::Components => self.link_components(node)?,
+            Link::Components => _ = self.link_components(node)?,
+            Link::ComponentsOrDrop => keep = self.link_components(node)? > 0,
             Link::Unchecked(count) => self.link_unchecked(node, count),
             Link::None => {}
         }
+        if !keep {
+            self.state.graph.drop_newest();
+            return Ok(Effect::Failed);
+        }
+        self.budget.kept += 1;
         Ok(Effect::Done)
     }
 
-    /// Lines 3 to 9 of Algorithm 2: tries the nearest node of each component.
-    fn link_components(&mut self, node: NodeId) -> Result<(), CallError> {
-        let near = self.nearest_of_each_component(node);
+    /// Lines 3 to 9 of Algorithm 2: tries the nearest node of each component; how many of them it reached.
+    fn link_components(&mut self, node: NodeId) -> Result<usize, CallError> {
+        let mut reached = 0;
+        let near = self.nearest_of_each_component(node, |other| self.same_fingers(other, node));
         let paths = self.session.ahead(near.len(), |i| self.grasp_path(near[i], node)).collect::<Vec<_>>();
         for (&other, path) in near.iter().zip(paths) {
             self.state.tally.add(&path.tally);
             self.state.graph.mark_tried(other, node, EdgeKind::Grasp);
             if path.result? {
                 self.state.graph.add_edge(other, node, EdgeKind::Grasp, EdgeVerdict::Valid);
+                reached += 1;
             }
         }
-        Ok(())
+        Ok(reached)
     }
 
     fn link_unchecked(&mut self, node: NodeId, count: usize) {
@@ -90,14 +96,14 @@ impl Search<'_> {
         }
     }
 
-    /// The node nearest to `node` in each component but its own, of those that the same fingers hold.
-    fn nearest_of_each_component(&self, node: NodeId) -> Vec<NodeId> {
+    /// The node nearest to `node` in each component but its own, of those that are `wanted`.
+    pub fn nearest_of_each_component(&self, node: NodeId, wanted: impl Fn(NodeId) -> bool) -> Vec<NodeId> {
         let graph = &*self.state.graph;
         let mut best: Vec<Option<(f64, NodeId)>> = vec![None; graph.node_count()];
         let own = graph.component(node);
         for other in graph.ids() {
             let component = graph.component(other);
-            if component == own || !self.same_fingers(other, node) {
+            if component == own || !wanted(other) {
                 continue;
             }
             let distance = graph.distance(other, node);
@@ -111,7 +117,8 @@ impl Search<'_> {
 
     /// Another grasp at the goal's pose from time to time: the ones that were found may all be bad ones.
     fn more_goals(&mut self) -> Result<(), CallError> {
-        if !self.budget.samples.is_multiple_of(SAMPLES_PER_GOAL) {
+        let period = self.leg.policy.samples_per_goal;
+        if period == 0 || !self.budget.samples.is_multiple_of(period) {
             return Ok(());
         }
         let Some(finder) = &mut self.state.finder else { return Ok(()) };

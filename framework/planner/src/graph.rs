@@ -49,6 +49,30 @@ impl Graph {
         node
     }
 
+    /// Takes the newest node out again; it has no edges.
+    pub fn drop_newest(&mut self) {
+        let node = NodeId(self.nodes.len() as u32 - 1);
+        debug_assert!(self.edges.iter().all(|edge| edge.from != node && edge.to != node));
+        self.nodes.pop();
+        self.origins.pop();
+        self.component.pop();
+        self.components.retain(|component| component.0 != node.0);
+        self.tried.retain(|&(_, larger, _)| larger != node);
+    }
+
+    /// Takes out all nodes but the first `count`, with their edges and what was tried with them.
+    pub fn truncate(&mut self, count: usize) {
+        let stays = |node: NodeId| (node.0 as usize) < count;
+        self.nodes.truncate(count);
+        self.origins.truncate(count);
+        self.tried.retain(|&(_, larger, _)| stays(larger));
+        let gone: Vec<_> =
+            self.edges.iter().filter(|edge| !stays(edge.from.max(edge.to))).map(|edge| edge.id).collect();
+        self.edges.retain(|edge| stays(edge.from.max(edge.to)));
+        gone.iter().for_each(|id| _ = self.steps.remove(id));
+        self.label();
+    }
+
     /// The configuration of a node.
     pub fn node(&self, node: NodeId) -> &Configuration {
         &self.nodes[node.0 as usize]
@@ -131,6 +155,11 @@ impl Graph {
     pub fn remove_edge(&mut self, id: EdgeId) {
         self.edges.retain(|edge| edge.id != id);
         self.steps.remove(&id);
+        self.label();
+    }
+
+    /// Works the components out anew.
+    fn label(&mut self) {
         self.component = (0..self.nodes.len() as u32).map(ComponentId).collect();
         self.components = self.component.clone();
         for (from, to) in self.edges.iter().map(|edge| (edge.from, edge.to)).collect::<Vec<_>>() {
@@ -157,6 +186,18 @@ impl Graph {
     /// apart on the object, averaged over the fingers.
     pub fn distance(&self, a: NodeId, b: NodeId) -> f64 {
         configuration_distance(self.node(a), self.node(b), self.turn_length)
+    }
+
+    /// The components of the nodes by paths in GS_n alone: how many, and how many nodes the largest has.
+    pub fn grasp_components(&self) -> (usize, usize) {
+        let mut inside = Self::new(self.turn_length);
+        inside.component = self.ids().map(|node| ComponentId(node.0)).collect();
+        inside.components = inside.component.clone();
+        for edge in self.edges.iter().filter(|edge| edge.kind == EdgeKind::Grasp) {
+            inside.merge(edge.from, edge.to);
+        }
+        let size = |id: &ComponentId| inside.component.iter().filter(|other| *other == id).count();
+        (inside.components.len(), inside.components.iter().map(size).max().unwrap_or(0))
     }
 
     fn merge(&mut self, a: NodeId, b: NodeId) {
@@ -218,6 +259,38 @@ mod tests {
         assert_eq!(graph.component(NodeId(4)), ComponentId(3));
         assert!(graph.was_tried(NodeId(3), NodeId(2), EdgeKind::Grasp), "a removed edge stays tried");
         assert!(!graph.was_tried(NodeId(3), NodeId(2), EdgeKind::TransferRegrasp));
+    }
+
+    #[test]
+    fn a_truncated_graph_is_as_it_was() {
+        let (mut graph, edges) = chain(3);
+        graph.add_node(at(7.0), Origin::Explored);
+        graph.add_edge(NodeId(0), NodeId(3), EdgeKind::Grasp, EdgeVerdict::Valid);
+        graph.remove_edge(edges[1]);
+        graph.truncate(3);
+        assert_eq!((graph.node_count(), graph.edges().len()), (3, 1));
+        assert_eq!(graph.components(), [ComponentId(0), ComponentId(2)]);
+        assert!(graph.was_tried(NodeId(1), NodeId(2), EdgeKind::Grasp));
+        assert!(!graph.was_tried(NodeId(0), NodeId(3), EdgeKind::Grasp));
+    }
+
+    #[test]
+    fn components_of_gs_n_know_no_other_edges() {
+        let (mut graph, _) = chain(3);
+        let far = graph.add_node(at(9.0), Origin::Explored);
+        graph.add_edge(NodeId(0), far, EdgeKind::TransferRegrasp, EdgeVerdict::Executable);
+        assert_eq!((graph.components().len(), graph.grasp_components()), (1, (2, 3)));
+    }
+
+    #[test]
+    fn a_dropped_node_leaves_nothing_behind() {
+        let (mut graph, _) = chain(3);
+        let node = graph.add_node(at(9.0), Origin::Explored);
+        graph.mark_tried(NodeId(1), node, EdgeKind::Grasp);
+        graph.drop_newest();
+        assert_eq!((graph.node_count(), graph.components()), (3, &[ComponentId(0)][..]));
+        assert_eq!(graph.add_node(at(5.0), Origin::Explored), node, "its number is free again");
+        assert!(!graph.was_tried(node, NodeId(1), EdgeKind::Grasp), "what was tried with it is forgotten");
     }
 
     #[test]

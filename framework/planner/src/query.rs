@@ -1,11 +1,11 @@
 //! The query: a way through the graph, whose paths in GS_n become transfers and regrasps.
 
-use crate::decompose::decompose;
+use crate::decompose::{decompose, halve};
 use crate::search::Search;
 use crate::segments::{moves, reversed};
 use crate::session::{Call, Counted};
 use crate::shortest_path::{Step, shortest_path};
-use regrasp_api::{CallError, EdgeId};
+use regrasp_api::{CallError, Decomposition, EdgeId};
 use regrasp_plan::Segment;
 
 type Decomposed = Counted<Result<Option<Vec<Segment>>, CallError>>;
@@ -19,9 +19,11 @@ impl Search<'_> {
         let decomposed = self.decompose_until_failure(&todo);
         for (step, found) in todo.iter().zip(decomposed) {
             self.state.tally.add(&found.tally);
+            self.budget.decompositions.0 += 1;
             match found.result? {
                 Some(segments) => self.state.graph.set_steps(step.edge, segments),
                 None => {
+                    self.budget.decompositions.1 += 1;
                     self.state.graph.remove_edge(step.edge);
                     return Ok(None);
                 }
@@ -49,7 +51,10 @@ impl Search<'_> {
         let edge = graph.edge(id).expect("the path's edges are in the graph");
         let (from, to) = (graph.node(edge.from), graph.node(edge.to));
         let key = (Call::Decompose, u64::from(edge.from.0), u64::from(edge.to.0));
-        self.session.counted(&self.leg.task, key, |work| decompose(work, from, to))
+        self.session.counted(&self.leg.task, key, |work| match self.leg.policy.decomposition {
+            Decomposition::Halving => halve(work, from, to),
+            _ => decompose(work, from, to),
+        })
     }
 
     fn assemble(&self, path: &[Step]) -> Vec<Segment> {

@@ -11,7 +11,7 @@ use crate::view::LegView;
 use regrasp_abi::GuardedService;
 use regrasp_api::{
     Action, CallError, Configuration, EdgeId, EdgeVerdict, Effect, FingerSet, GraphView, NodeId, PastAction,
-    Slot, Tally, Target, Task, Vicinity,
+    SearchPolicy, Slot, Tally, Target, Task, Vicinity,
 };
 use regrasp_plan::Segment;
 use std::collections::VecDeque;
@@ -27,6 +27,8 @@ pub(crate) struct Leg<'a> {
     pub start: NodeId,
     /// The sets of fingers that may hold the object.
     pub choices: &'a [FingerSet],
+    /// How the strategy wants its actions carried out.
+    pub policy: SearchPolicy,
 }
 
 /// How far a search is.
@@ -59,10 +61,38 @@ pub(crate) struct Budget {
     /// Those of them that were drawn anywhere; counted apart, for what is drawn ahead must not change its number when nodes are extended
     /// in between.
     pub anywhere: usize,
-    /// Nodes that samples gave.
+    /// Nodes that samples gave, kept or not.
     pub generated: usize,
+    /// Those of them that were kept.
+    pub kept: usize,
     /// Actions that could change nothing.
     pub futile: usize,
+    /// Decompositions of paths in GS_n, and how many of them failed.
+    pub decompositions: (usize, usize),
+    /// Rounds that were begun.
+    pub rounds: u64,
+    /// The number of samples at which the round is over; none where rounds have no end.
+    pub round_end: Option<usize>,
+}
+
+impl Budget {
+    /// Begins the next round: its length in units of `unit` samples follows the sequence 1, 1, 2, 1, 1, 2, 4, … of M. Luby, A. Sinclair,
+    /// D. Zuckerman, "Optimal speedup of Las Vegas algorithms", IPL 1993: whatever the distribution of a search's length, no schedule
+    /// is better by more than a logarithm. `unit` = 0 means one round without an end.
+    pub fn begin_round(&mut self, unit: usize) {
+        self.rounds += 1;
+        self.round_end = (unit > 0).then(|| self.samples + unit * luby(self.rounds) as usize);
+    }
+
+    fn round_is_over(&self) -> bool {
+        self.samples < self.most && self.round_end.is_some_and(|end| self.samples >= end)
+    }
+}
+
+/// The `i`-th number, from 1, of Luby's sequence.
+fn luby(i: u64) -> u64 {
+    let next_power = (i + 1).next_power_of_two();
+    if next_power == i + 1 { next_power / 2 } else { luby(i + 1 - next_power / 2) }
 }
 
 /// The search of one leg.
@@ -71,38 +101,51 @@ pub(crate) struct Search<'a> {
     pub progress: &'a dyn crate::Progress,
     pub leg: Leg<'a>,
     pub state: State<'a>,
-    pub budget: Budget,
+    pub budget: &'a mut Budget,
+}
+
+/// How a round of a search ended.
+pub(crate) enum Ended {
+    /// With an executable way.
+    Found(Vec<Segment>),
+    /// The strategy gave up, or the budget is spent.
+    Stopped,
+    /// It has grown long enough: another round may have better luck.
+    Anew,
 }
 
 /// A sample that was drawn, and what it counted.
 pub(crate) type Sample = Counted<Result<Option<Configuration>, CallError>>;
 
 impl Search<'_> {
-    /// Runs until a path is found and decomposed (its segments), or the strategy or the budget ends the search (`None`).
-    pub fn run(&mut self) -> Result<Option<Vec<Segment>>, CallError> {
+    /// Runs until a path is found and decomposed, the strategy or the budget ends the search, or the round is over.
+    pub fn run(&mut self) -> Result<Ended, CallError> {
         for step in 0.. {
+            if self.budget.round_is_over() {
+                break;
+            }
             self.session.proceed()?;
             let graph = &self.state.graph;
             self.progress.search(self.leg.number, graph.node_count(), graph.components().len());
             let action = self.decide(step)?;
             if self.is_over(action) {
-                return Ok(None);
+                return Ok(Ended::Stopped);
             }
             let before = Before::of(self.state.graph, self.state.tally);
             let (effect, found) = self.act(action)?;
-            if found.is_some() {
-                return Ok(found);
+            if let Some(segments) = found {
+                return Ok(Ended::Found(segments));
             }
             self.budget.futile += usize::from(effect == Effect::Futile);
             let past = before.past(self.state.graph, self.state.tally, action, effect);
             self.state.history.push(past);
         }
-        Ok(None)
+        Ok(Ended::Anew)
     }
 
     /// Whether the search ends before this action: the strategy gives up, or its budget is spent.
     fn is_over(&mut self, action: Action) -> bool {
-        let Budget { most, samples, futile, .. } = self.budget;
+        let Budget { most, samples, futile, .. } = *self.budget;
         let why = match action {
             Action::Stop => return true,
             Action::Explore(_) | Action::Extend(..) if samples >= most => {
@@ -127,6 +170,7 @@ impl Search<'_> {
             Action::Explore(link) => self.explore(link)?,
             Action::Extend(node, within, link) => self.extend(node, within, link)?,
             Action::Connect(a, b, kind) => self.connect(a, b, kind)?,
+            Action::ConnectAll(node, kind) => self.connect_all(node, kind)?,
             Action::Check(edge) => self.check(edge)?,
             Action::Query => {
                 let found = self.query()?;
@@ -142,6 +186,7 @@ impl Search<'_> {
         let graph = &self.state.graph;
         match action {
             Action::Connect(a, b, kind) => graph.was_tried(a, b, kind),
+            Action::ConnectAll(node, kind) => self.nearest_untried(node, kind).is_empty(),
             Action::Check(id) => graph.edge(id).is_none_or(|edge| edge.verdict != EdgeVerdict::Unchecked),
             Action::Query => !self.view().joined(),
             _ => false,
@@ -153,7 +198,7 @@ impl Search<'_> {
             graph: self.state.graph,
             start: self.leg.start,
             goals: &self.state.goals,
-            generated: (self.budget.samples, self.budget.most),
+            samples: (self.budget.samples, self.budget.most),
             history: &self.state.history,
         }
     }
@@ -178,6 +223,7 @@ impl Search<'_> {
                 let sound = |size: f64| size.is_finite() && size > 0.0;
                 known(node) && sound(radius) && sound(angle)
             }
+            Action::ConnectAll(node, _) => known(node),
             Action::Connect(a, b, _) => known(a) && known(b) && a != b,
             _ => true,
         };
@@ -204,4 +250,32 @@ impl Search<'_> {
 /// What the strategy asked for cannot be done.
 fn contract(reason: String) -> CallError {
     CallError::Contract { plugin: Slot::GraphStrategy.name().into(), reason }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounds_follow_lubys_sequence() {
+        let first: Vec<u64> = (1..=15).map(luby).collect();
+        assert_eq!(first, [1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8]);
+    }
+
+    #[test]
+    fn a_round_ends_at_its_samples_and_the_budget_ends_the_last() {
+        let mut budget = Budget { most: 100, ..Default::default() };
+        budget.begin_round(40);
+        budget.samples = 39;
+        assert!(!budget.round_is_over());
+        budget.samples = 40;
+        assert!(budget.round_is_over());
+        budget.begin_round(40);
+        budget.begin_round(40);
+        budget.samples = 119;
+        assert!(!budget.round_is_over(), "the strategy stops at the budget of all rounds");
+        budget.begin_round(0);
+        budget.samples = 99;
+        assert!(!budget.round_is_over());
+    }
 }

@@ -51,6 +51,8 @@ pub(crate) enum Call {
     Decompose = 8,
     /// One try of the smoother.
     Smooth = 9,
+    /// The seed of a round of a search, after the first.
+    Round = 10,
 }
 
 /// The key of a call: what it is for, and two numbers that tell calls of a kind apart.

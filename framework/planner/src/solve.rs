@@ -1,6 +1,6 @@
 //! A whole run: start and goals, one search a goal, smoothing, timing.
 
-use crate::admissible::{Holdable, Leavable};
+use crate::admissible::{Holdable, admission};
 use crate::draft::Draft;
 use crate::error::{End, PlanError};
 use crate::graph::Graph;
@@ -17,7 +17,8 @@ use std::collections::BTreeSet;
 pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
     let poses = poses(request.problem)?;
     // A sampler from a library asks for admission in its own binary, which a panic could not leave.
-    let admissible = GuardedService(&Leavable as &dyn Admissible);
+    let policy = request.plugins.strategy.policy();
+    let admissible = GuardedService(admission(policy.admission));
     let task = Task {
         hand: request.hand,
         clearance: request.clearance,
@@ -33,8 +34,8 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
         landmarks: &poses,
     };
     let holdable = GuardedService(&Holdable as &dyn Admissible);
-    let choices = finger_choices(&task, 1)?;
-    let end_choices = finger_choices(&task, 0)?;
+    let choices = finger_choices(&task, policy.spare_fingers, policy.more_fingers)?;
+    let end_choices = finger_choices(&task, 0, true)?;
     let pool = pool(request.threads);
     let session = Session {
         plugins: Drivers::of(&request.plugins),
@@ -42,14 +43,15 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
         interrupt: request.interrupt,
         pool: pool.as_ref(),
     };
-    let run = Run {
+    let mut run = Run {
         request,
-        session: &session,
+        session,
         task,
         poses: &poses,
         choices,
         end_task: Task { admissible: &holdable, ..task },
         end_choices,
+        policy,
         graph: Graph::new(request.object.mesh.radius()),
         draft: Draft::default(),
         statistics: Statistics::default(),
@@ -58,7 +60,8 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
         ends: Vec::new(),
         used: BTreeSet::new(),
     };
-    run.to_the_end()
+    let ended = run.legs();
+    run.finish(ended)
 }
 
 /// Start and goals as poses; two in turn that coincide are refused where no grasp tells them apart.
@@ -78,15 +81,18 @@ fn poses(problem: &Problem) -> Result<Vec<Pose>, PlanError> {
     Ok(poses)
 }
 
-/// The sets of fingers that may hold the object, with at least `more` than the fewest that can be stable: 1 gives GS_n and beyond.
-fn finger_choices(task: &Task<'_>, more: usize) -> Result<Vec<FingerSet>, PlanError> {
+/// The sets of fingers that may hold the object, with `spare` more than the fewest that can be stable: 1 gives GS_n; larger ones where `more`
+/// says so.
+fn finger_choices(task: &Task<'_>, spare: usize, more: bool) -> Result<Vec<FingerSet>, PlanError> {
     let (fingers, fewest) = (task.hand.finger_count(), task.contact_model.fewest_contacts());
-    if fingers < fewest + 1 {
+    if fingers < fewest + spare.max(1) {
         return Err(PlanError::TooFewFingers { fingers, fewest });
     }
+    let least = fewest + spare;
+    let most = if more { fingers } else { least };
     let all = FingerSet::first(fingers);
     let subsets = (0..=u8::MAX).map(FingerSet::from_bits).filter(|&set| set.intersection(all) == set);
-    Ok(subsets.filter(|set| set.len() >= fewest + more).collect())
+    Ok(subsets.filter(|set| (least..=most).contains(&set.len())).collect())
 }
 
 fn pool(threads: usize) -> Option<rayon::ThreadPool> {

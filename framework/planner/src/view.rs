@@ -11,7 +11,7 @@ pub(crate) struct LegView<'a> {
     pub graph: &'a Graph,
     pub start: NodeId,
     pub goals: &'a [NodeId],
-    pub generated: (usize, usize),
+    pub samples: (usize, usize),
     pub history: &'a [PastAction],
 }
 
@@ -19,8 +19,8 @@ impl GraphView for LegView<'_> {
     fn node_count(&self) -> usize {
         self.graph.node_count()
     }
-    fn generated(&self) -> (usize, usize) {
-        self.generated
+    fn samples(&self) -> (usize, usize) {
+        self.samples
     }
     fn start(&self) -> NodeId {
         self.start

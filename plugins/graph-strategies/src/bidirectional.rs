@@ -17,7 +17,7 @@
 use crate::nearest::{ends, nearest_in, nodes};
 use regrasp_api::{
     Action, Build, CallError, ComponentId, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, NodeId,
-    Settings, SettingsError, Slot, Vicinity, check_settings, inventory,
+    SearchPolicy, Settings, SettingsError, Slot, Vicinity, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -31,12 +31,14 @@ pub struct BidirectionalSettings {
     /// Probability of a sample anywhere in place of one near a tree.
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub anywhere: f64,
+    /// How the planner carries out the strategy's actions.
+    pub policy: SearchPolicy,
 }
 
 impl Default for BidirectionalSettings {
     /// Our choices.
     fn default() -> Self {
-        Self { greed: 0.8, anywhere: 0.1 }
+        Self { greed: 0.8, anywhere: 0.1, policy: SearchPolicy::default() }
     }
 }
 
@@ -57,7 +59,7 @@ impl Bidirectional {
 
     /// The node to extend, of the tree whose turn it is.
     fn node_to_extend(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> NodeId {
-        let (tree, other) = if graph.generated().0.is_multiple_of(2) {
+        let (tree, other) = if graph.samples().0.is_multiple_of(2) {
             (Tree::Start, Tree::Goals)
         } else {
             (Tree::Goals, Tree::Start)
@@ -81,14 +83,18 @@ impl GraphStrategy for Bidirectional {
         if let Some(action) = join_trees(graph) {
             return Ok(action);
         }
-        let (generated, most) = graph.generated();
-        if generated >= most {
+        let (samples, most) = graph.samples();
+        if samples >= most {
             return Ok(Action::Stop);
         }
         if graph.goals().is_empty() || context.random.unit() < self.settings.anywhere {
             return Ok(Action::Explore(Link::Components));
         }
         Ok(Action::Extend(self.node_to_extend(graph, context), Vicinity::default(), Link::Components))
+    }
+
+    fn policy(&self) -> SearchPolicy {
+        self.settings.policy
     }
 }
 

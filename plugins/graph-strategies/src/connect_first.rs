@@ -15,8 +15,8 @@
 
 use crate::nearest::{join_ends, untried_pair};
 use regrasp_api::{
-    Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, Settings,
-    SettingsError, Slot, check_settings, inventory,
+    Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, SearchPolicy,
+    Settings, SettingsError, Slot, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -27,12 +27,14 @@ pub struct ConnectFirstSettings {
     /// Nearest nodes of other components that a node is tried to be connected with.
     #[schemars(range(min = 1, max = 1000))]
     pub neighbours: usize,
+    /// How the planner carries out the strategy's actions.
+    pub policy: SearchPolicy,
 }
 
 impl Default for ConnectFirstSettings {
     /// Our choice.
     fn default() -> Self {
-        Self { neighbours: 3 }
+        Self { neighbours: 3, policy: SearchPolicy::default() }
     }
 }
 
@@ -64,8 +66,12 @@ impl GraphStrategy for ConnectFirst {
         if let Some((a, b)) = untried_pair(graph, self.settings.neighbours, context) {
             return Ok(Action::Connect(a, b, EdgeKind::TransferRegrasp));
         }
-        let (generated, most) = graph.generated();
-        Ok(if generated < most { Action::Explore(Link::Components) } else { Action::Stop })
+        let (samples, most) = graph.samples();
+        Ok(if samples < most { Action::Explore(Link::Components) } else { Action::Stop })
+    }
+
+    fn policy(&self) -> SearchPolicy {
+        self.settings.policy
     }
 }
 

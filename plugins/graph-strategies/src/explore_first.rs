@@ -15,8 +15,8 @@
 
 use crate::nearest::{join_ends, untried_pair};
 use regrasp_api::{
-    Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, Settings,
-    SettingsError, Slot, check_settings, inventory,
+    Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, SearchPolicy,
+    Settings, SettingsError, Slot, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -33,12 +33,14 @@ pub struct ExploreFirstSettings {
     /// Nearest nodes of other components that a node is tried to be connected with.
     #[schemars(range(min = 1, max = 1000))]
     pub neighbours: usize,
+    /// How the planner carries out the strategy's actions.
+    pub policy: SearchPolicy,
 }
 
 impl Default for ExploreFirstSettings {
     /// Our choices: a graph of the size that the paper's Table 1 ends with (23 to 65 nodes), and half of the budget.
     fn default() -> Self {
-        Self { nodes: 25, fraction: 0.5, neighbours: 5 }
+        Self { nodes: 25, fraction: 0.5, neighbours: 5, policy: SearchPolicy::default() }
     }
 }
 
@@ -59,8 +61,8 @@ impl ExploreFirst {
 
     /// Whether the graph is still too small to connect its components.
     fn explores(&self, graph: &dyn GraphView) -> bool {
-        let (generated, most) = graph.generated();
-        graph.node_count() < self.settings.nodes && (generated as f64) < self.settings.fraction * most as f64
+        let (samples, most) = graph.samples();
+        graph.node_count() < self.settings.nodes && (samples as f64) < self.settings.fraction * most as f64
     }
 }
 
@@ -78,8 +80,12 @@ impl GraphStrategy for ExploreFirst {
         {
             return Ok(Action::Connect(a, b, EdgeKind::TransferRegrasp));
         }
-        let (generated, most) = graph.generated();
-        Ok(if generated < most { Action::Explore(Link::Components) } else { Action::Stop })
+        let (samples, most) = graph.samples();
+        Ok(if samples < most { Action::Explore(Link::Components) } else { Action::Stop })
+    }
+
+    fn policy(&self) -> SearchPolicy {
+        self.settings.policy
     }
 }
 

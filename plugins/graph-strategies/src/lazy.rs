@@ -18,7 +18,7 @@
 use crate::nearest::untried_pair;
 use regrasp_api::{
     Action, Build, CallError, Context, EdgeId, EdgeKind, EdgeVerdict, Entry, GraphStrategy, GraphView, Link,
-    NodeId, Settings, SettingsError, Slot, check_settings, inventory,
+    NodeId, SearchPolicy, Settings, SettingsError, Slot, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -35,12 +35,14 @@ pub struct LazySettings {
     /// Probability that while start and goal are apart two components are tried by transfer and regrasps.
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub connect: f64,
+    /// How the planner carries out the strategy's actions.
+    pub policy: SearchPolicy,
 }
 
 impl Default for LazySettings {
     /// Our choices.
     fn default() -> Self {
-        Self { neighbours: 5, connect: 0.2 }
+        Self { neighbours: 5, connect: 0.2, policy: SearchPolicy::default() }
     }
 }
 
@@ -69,8 +71,8 @@ impl GraphStrategy for Lazy {
         if let Some(goal) = untried_goal(graph) {
             return Ok(Action::Connect(graph.start(), goal, EdgeKind::Grasp));
         }
-        let (generated, most) = graph.generated();
-        if generated >= most {
+        let (samples, most) = graph.samples();
+        if samples >= most {
             return Ok(Action::Stop);
         }
         if context.random.unit() < self.settings.connect
@@ -79,6 +81,10 @@ impl GraphStrategy for Lazy {
             return Ok(Action::Connect(a, b, EdgeKind::TransferRegrasp));
         }
         Ok(Action::Explore(Link::Unchecked(self.settings.neighbours)))
+    }
+
+    fn policy(&self) -> SearchPolicy {
+        self.settings.policy
     }
 }
 

@@ -76,7 +76,7 @@ proptest! {
 #[test]
 fn interleaved_connects_as_often_as_its_law_says() {
     // Where nothing joins there is always a pair to try, so that α decides alone.
-    let settings = InterleavedSettings { start: 0.1, end: 0.6, growth: 30.0 };
+    let settings = InterleavedSettings { start: 0.1, end: 0.6, growth: 30.0, ..Default::default() };
     let strategy = Interleaved::new(settings).unwrap();
     let (mut drawn, mut connected, mut expected, mut variance) = (0, 0, 0.0, 0.0);
     for key in 0..40 {
@@ -110,13 +110,15 @@ fn interleaved_tries_to_reach_the_goals_before_it_joins_the_ends_inside_the_mani
     assert_eq!(reach, goals.iter().map(start_to).collect::<Vec<_>>());
     let ends = |a: NodeId, b: NodeId| a.0 < 3 && b.0 < 3;
     assert!(matches!(join[0], Action::Connect(a, b, EdgeKind::Grasp) if ends(a, b)), "{:?}", join[0]);
-    let never = Interleaved::new(InterleavedSettings { start: 0.0, end: 0.0, growth: 1.0 }).unwrap();
+    let never =
+        Interleaved::new(InterleavedSettings { start: 0.0, end: 0.0, growth: 1.0, ..Default::default() })
+            .unwrap();
     run(&never, FAIR, 2, |_, action| assert!(!by_transfer(action) || reach.contains(&action)));
 }
 
 #[test]
 fn explore_first_connects_only_a_graph_of_its_size() {
-    let settings = ExploreFirstSettings { nodes: 20, fraction: 0.5, neighbours: 4 };
+    let settings = ExploreFirstSettings { nodes: 20, fraction: 0.5, neighbours: 4, ..Default::default() };
     let strategy = ExploreFirst::new(settings).unwrap();
     let mut connected = 0;
     for key in 0..5 {
@@ -126,10 +128,15 @@ fn explore_first_connects_only_a_graph_of_its_size() {
         });
     }
     // The share of the budget ends exploring too: 6 of 60 nodes, long before 1000.
-    let strategy =
-        ExploreFirst::new(ExploreFirstSettings { nodes: 1000, fraction: 0.1, neighbours: 4 }).unwrap();
+    let strategy = ExploreFirst::new(ExploreFirstSettings {
+        nodes: 1000,
+        fraction: 0.1,
+        neighbours: 4,
+        ..Default::default()
+    })
+    .unwrap();
     run(&strategy, BARREN, 1, |graph, action| {
-        assert!(!by_transfer(action) || graph.generated().0 >= 6);
+        assert!(!by_transfer(action) || graph.samples().0 >= 6);
         connected += usize::from(by_transfer(action));
     });
     assert!(connected > 20, "{connected}");
@@ -137,7 +144,7 @@ fn explore_first_connects_only_a_graph_of_its_size() {
 
 #[test]
 fn connect_first_grows_only_when_the_newest_node_and_the_ends_have_nothing_left() {
-    let strategy = ConnectFirst::new(ConnectFirstSettings { neighbours: 3 }).unwrap();
+    let strategy = ConnectFirst::new(ConnectFirstSettings { neighbours: 3, ..Default::default() }).unwrap();
     let mut grown = 0;
     run(&strategy, Weather { joins: 0.02, ..BARREN }, 3, |graph, action| {
         if !grows(action) {
@@ -158,7 +165,7 @@ fn connect_first_grows_only_when_the_newest_node_and_the_ends_have_nothing_left(
 
 #[test]
 fn lazy_checks_the_edges_of_its_path_and_nothing_else() {
-    let strategy = Lazy::new(LazySettings { neighbours: 4, connect: 0.1 }).unwrap();
+    let strategy = Lazy::new(LazySettings { neighbours: 4, connect: 0.1, ..Default::default() }).unwrap();
     let (mut checked, mut queried) = (0, 0);
     for key in 0..10 {
         run(&strategy, Weather { joins: 0.5, ..FAIR }, key, |graph, action| {
@@ -193,7 +200,7 @@ fn lazy_checks_the_edges_of_its_path_and_nothing_else() {
 
 #[test]
 fn bidirectional_extends_its_trees_in_turn() {
-    let settings = BidirectionalSettings { greed: 0.5, anywhere: 0.0 };
+    let settings = BidirectionalSettings { greed: 0.5, anywhere: 0.0, ..Default::default() };
     let strategy = Bidirectional::new(settings).unwrap();
     let (mut of_start, mut of_goals) = (0, 0);
     for key in 0..10 {
@@ -205,7 +212,7 @@ fn bidirectional_extends_its_trees_in_turn() {
             let in_goals = |node: NodeId| {
                 graph.goals().iter().any(|&goal| graph.component(goal) == graph.component(node))
             };
-            if graph.generated().0.is_multiple_of(2) {
+            if graph.samples().0.is_multiple_of(2) {
                 of_start += 1;
                 assert!(in_start(node));
             } else {
@@ -219,7 +226,9 @@ fn bidirectional_extends_its_trees_in_turn() {
 
 #[test]
 fn bidirectional_draws_anywhere_as_often_as_it_is_told() {
-    let strategy = Bidirectional::new(BidirectionalSettings { greed: 1.0, anywhere: 0.3 }).unwrap();
+    let strategy =
+        Bidirectional::new(BidirectionalSettings { greed: 1.0, anywhere: 0.3, ..Default::default() })
+            .unwrap();
     let (mut anywhere, mut near) = (0, 0);
     for key in 0..20 {
         run(&strategy, BARREN, key, |_, action| match action {
@@ -246,8 +255,8 @@ fn settings_are_refused_beyond_their_ranges() {
         "fraction",
         ExploreFirstSettings { fraction: f64::NAN, ..Default::default() }.validate().unwrap_err(),
     );
-    range("neighbours", ConnectFirstSettings { neighbours: 0 }.validate().unwrap_err());
+    range("neighbours", ConnectFirstSettings { neighbours: 0, ..Default::default() }.validate().unwrap_err());
     range("connect", LazySettings { connect: 1.5, ..Default::default() }.validate().unwrap_err());
     range("greed", BidirectionalSettings { greed: 1.1, ..Default::default() }.validate().unwrap_err());
-    assert!(Lazy::new(LazySettings { neighbours: 0, connect: 0.5 }).is_err());
+    assert!(Lazy::new(LazySettings { neighbours: 0, connect: 0.5, ..Default::default() }).is_err());
 }

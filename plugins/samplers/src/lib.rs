@@ -6,6 +6,7 @@
 
 mod chains;
 pub mod grasp_first;
+mod pools;
 mod pose;
 pub mod projection;
 pub mod rlg;

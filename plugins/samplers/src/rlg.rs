@@ -6,9 +6,11 @@
 //! for planning the motions of closed kinematic chains using PRM methods", ICRA 2002).
 //!
 //! Contacts are drawn by rejection, the cheapest test first: a fingertip outside the ball that the finger can reach costs
-//! a few nanoseconds, so that about thirty tries a finger are cheaper than listing the facets within reach.
+//! a few nanoseconds, so that about thirty tries a finger are cheaper than listing the facets within reach. Where the pose is given,
+//! contacts that were found for one finger are combined with those of the others many times (`pools`).
 
 use crate::chains;
+use crate::pools::Pools;
 use crate::pose::{self, PoseLaw};
 use regrasp_api::{
     Build, CallError, ClosedChainSampler, Configuration, Contact, Context, Entry, FingerIndex, FingerSet,
@@ -86,6 +88,38 @@ impl Rlg {
         })
     }
 
+    /// A grasp at a given pose: `poses` rounds, each of which looks for one more contact of each finger and tries combinations.
+    fn sample_at(
+        &self,
+        task: &Task<'_>,
+        X_HO: Pose,
+        holding: FingerSet,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Configuration>, CallError> {
+        if task.clearance.object_free(&X_HO).is_err() {
+            context.reject(Slot::Sampler, Reason::Collision);
+            return Ok(None);
+        }
+        let resting = chains::at_rest(task, X_HO);
+        let mut pools = Pools::new(holding, resting.joints.len());
+        for _ in 0..self.settings.poses {
+            context.proceed()?;
+            let mut missing = None;
+            for finger in holding.iter() {
+                let mut q = resting.clone();
+                match (self.place(task, &mut q, finger, FingerSet::EMPTY, context)?, q.contacts[finger]) {
+                    (None, Some(contact)) => pools.add(finger, contact, q.joints[finger]),
+                    (reason, _) => missing = reason.or(missing),
+                }
+            }
+            match pools.combine(task, &resting, context)? {
+                Ok(q) => return Ok(Some(q)),
+                Err(reason) => context.reject(Slot::Sampler, missing.unwrap_or(reason)),
+            };
+        }
+        Ok(None)
+    }
+
     /// Gives `finger` a contact beside the fingers already placed; the reason of the last failure if it finds none.
     fn place(
         &self,
@@ -128,6 +162,9 @@ impl ClosedChainSampler for Rlg {
         context: &mut Context<'_>,
     ) -> Result<Option<Configuration>, CallError> {
         context.count_call(Slot::Sampler);
+        if let PoseRequest::At(X_HO) = pose {
+            return self.sample_at(task, X_HO, holding, context);
+        }
         let RlgSettings { anywhere, spread_deg, .. } = self.settings;
         let law = PoseLaw { anywhere, spread: spread_deg.to_radians() };
         for _ in 0..self.settings.poses {

@@ -43,8 +43,8 @@ impl GraphStrategy for Alternate {
         if graph.joined() {
             return Ok(Action::Query);
         }
-        let (generated, most) = graph.generated();
-        if generated >= most {
+        let (samples, most) = graph.samples();
+        if samples >= most {
             return Ok(Action::Stop);
         }
         let connect = context.random.unit() < self.settings.connect;

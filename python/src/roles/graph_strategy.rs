@@ -31,7 +31,7 @@ impl Graph {
 
     #[getter]
     fn generated(&self) -> PyResult<(usize, usize)> {
-        Ok(self.0.value()?.generated())
+        Ok(self.0.value()?.samples())
     }
 
     #[getter]

@@ -149,8 +149,8 @@ impl GraphStrategy for Mend {
         if graph.joined() {
             return Ok(Action::Query);
         }
-        let (generated, most) = graph.generated();
-        if generated >= most {
+        let (samples, most) = graph.samples();
+        if samples >= most {
             return Ok(Action::Stop);
         }
         if context.random.unit() < self.settings.explore {

@@ -1,6 +1,6 @@
 //! Role 6: what to do next with the manipulation graph.
 
-use crate::{CallError, Configuration, Context, Tally};
+use crate::{CallError, Configuration, Context, SearchPolicy, Tally};
 
 /// A node of the manipulation graph, counted from 0 in the order of creation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -52,8 +52,10 @@ pub struct EdgeView {
 /// How a new node is joined to the graph inside GS_n.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Link {
-    /// Try a checked grasp edge to each component (Algorithm 2 of the paper).
+    /// Try a checked grasp edge to each component (lines 3 to 9 of the paper's Algorithm 2), and keep the node whatever comes of it.
     Components,
+    /// The same, and drop the node if it reaches no component (lines 10 to 13).
+    ComponentsOrDrop,
     /// Enter unchecked grasp edges to this many nearest nodes.
     Unchecked(usize),
     /// Leave it alone.
@@ -86,6 +88,9 @@ pub enum Action {
     Extend(NodeId, Vicinity, Link),
     /// Try an edge of the given kind between two nodes.
     Connect(NodeId, NodeId, EdgeKind),
+    /// Try an edge of the given kind from a node to the nearest node of every other component (Algorithm 3 of the paper); pairs that were
+    /// tried before are left out.
+    ConnectAll(NodeId, EdgeKind),
     /// Check an unchecked edge; if it fails it leaves the graph.
     Check(EdgeId),
     /// Search the graph for a path from start to goal and decompose it.
@@ -112,7 +117,7 @@ pub enum Origin {
 pub enum Effect {
     /// It did what it was to do: a node was made, an edge was entered, an edge passed its check.
     Done,
-    /// It was tried and failed: no sample, no path, an edge that left the graph.
+    /// It was tried and failed: no sample, a node that was dropped, no path, an edge that left the graph.
     Failed,
     /// It could change nothing, and nothing was tried: a pair tried before, an edge checked before or gone, a query while start and goal
     /// lie apart.
@@ -140,8 +145,8 @@ pub struct PastAction {
 pub trait GraphView {
     /// Nodes in the graph; their ids are `0..node_count()`.
     fn node_count(&self) -> usize;
-    /// Nodes generated so far, kept or not, and the most that may be generated.
-    fn generated(&self) -> (usize, usize);
+    /// Samples asked for so far, whether they gave a node or not, and the most that may be.
+    fn samples(&self) -> (usize, usize);
     /// The node that the search starts from.
     fn start(&self) -> NodeId;
     /// The goal's nodes, one for each grasp that was found at the goal's pose.
@@ -150,7 +155,8 @@ pub trait GraphView {
     fn configuration(&self, node: NodeId) -> &Configuration;
     /// Where a node comes from.
     fn origin(&self, node: NodeId) -> Origin;
-    /// What was done since this goal was begun with, first to last, each action with what it came to.
+    /// What was done since the search for this goal was begun, or begun anew ([`SearchPolicy::restart_samples`]), first to last, each action
+    /// with what it came to.
     fn history(&self) -> &[PastAction];
     /// The component of a node, unchecked edges included.
     fn component(&self, node: NodeId) -> ComponentId;
@@ -178,5 +184,10 @@ pub trait GraphView {
 pub trait GraphStrategy: Send + Sync {
     /// The next action.
     fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError>;
+
+    /// How the planner carries out its actions; the program's defaults unless the strategy says otherwise. Asked once a run.
+    fn policy(&self) -> SearchPolicy {
+        SearchPolicy::default()
+    }
 }
 const _: Option<&dyn GraphStrategy> = None; // must stay object safe

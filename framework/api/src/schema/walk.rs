@@ -11,13 +11,26 @@ pub fn check_schema(value: &Value, schema: &Value) -> Result<(), Departure> {
     Walk { root: schema }.check(value, schema, &KeyPath::default())
 }
 
-/// Adds the schema's defaults for keys that `settings` leaves out.
+/// Adds the schema's defaults for keys that `settings` leaves out, in tables within it too.
 pub fn fill_defaults(settings: &mut Map<String, Value>, schema: &Value) {
     let properties = schema.get("properties").and_then(Value::as_object);
     for (key, property) in properties.into_iter().flatten() {
-        if let (false, Some(default)) = (settings.contains_key(key), property.get("default")) {
-            settings.insert(key.clone(), default.clone());
+        if let Some(default) = property.get("default") {
+            fill(settings.entry(key.clone()).or_insert(Value::Null), default);
         }
+    }
+}
+
+/// The default where nothing is given, and its keys where a table is.
+fn fill(given: &mut Value, default: &Value) {
+    match (given, default) {
+        (Value::Object(given), Value::Object(default)) => {
+            for (key, value) in default {
+                fill(given.entry(key.clone()).or_insert(Value::Null), value);
+            }
+        }
+        (given @ Value::Null, default) => *given = default.clone(),
+        _ => {}
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::Audited;
 use crate::laws::ensure;
-use regrasp_api::{Action, CallError, Context, GraphStrategy, GraphView, NodeId};
+use regrasp_api::{Action, CallError, Context, GraphStrategy, GraphView, NodeId, SearchPolicy};
 use serde_json::json;
 
 impl GraphStrategy for Audited<'_, dyn GraphStrategy + '_> {
@@ -16,7 +16,7 @@ impl GraphStrategy for Audited<'_, dyn GraphStrategy + '_> {
                     "nodes": graph.node_count(),
                     "components": graph.components().len(),
                     "edges": graph.edges().len(),
-                    "generated": graph.generated().0,
+                    "samples": graph.samples().0,
                     "history": graph.history().len(),
                     "random": crate::input::random(context),
                 })
@@ -28,11 +28,16 @@ impl GraphStrategy for Audited<'_, dyn GraphStrategy + '_> {
                         known(node) && within.radius > 0.0 && within.angle > 0.0
                     }
                     Action::Connect(a, b, _) => known(a) && known(b) && a != b,
+                    Action::ConnectAll(node, _) => known(node),
                     Action::Check(id) => graph.edges().iter().any(|edge| edge.id == id),
                     _ => true,
                 };
                 ensure("strategy-sensible", sound, || format!("{action:?} with {} nodes", graph.node_count()))
             },
         )
+    }
+
+    fn policy(&self) -> SearchPolicy {
+        self.inner.policy()
     }
 }

@@ -12,8 +12,8 @@ impl GraphStrategy for Interleaving {
         if graph.joined() {
             return Ok(Action::Query);
         }
-        let (generated, most) = graph.generated();
-        if generated >= most {
+        let (samples, most) = graph.samples();
+        if samples >= most {
             return Ok(Action::Stop);
         }
         let nodes = graph.node_count() as u32;

@@ -107,8 +107,8 @@ fn stops(subject: &Subject<'_>) -> Finding {
         let mut graph = SquareGraph::new(BARREN, key);
         let end = run(&*strategy, &mut graph, key, |_, _| Ok(()))?;
         ensure(end == Outcome::Stopped, || {
-            let (generated, most) = graph.generated();
-            format!("goes on for {ENDLESS} actions, {generated} nodes generated of {most}")
+            let (samples, most) = graph.samples();
+            format!("goes on for {ENDLESS} actions, {samples} samples of {most}")
         })?;
     }
     Ok(())
@@ -120,9 +120,9 @@ fn goes_on(subject: &Subject<'_>) -> Finding {
         let weather = if key % 2 == 0 { BARREN } else { FAIR };
         let mut graph = SquareGraph::new(weather, key);
         let end = run(&*strategy, &mut graph, key, |_, _| Ok(()))?;
-        let (generated, most) = graph.generated();
-        ensure(end != Outcome::Stopped || generated >= most, || {
-            format!("gives up after {generated} of {most} nodes")
+        let (samples, most) = graph.samples();
+        ensure(end != Outcome::Stopped || samples >= most, || {
+            format!("gives up after {samples} of {most} samples")
         })?;
     }
     Ok(())

@@ -138,6 +138,9 @@ pub struct HandChoice {
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
 pub struct PluginTables {
+    /// Plugins and settings that belong together, under one name: `default` or `paper`. The tables below change it.
+    #[schemars(example = &"paper")]
+    pub preset: Option<String>,
     /// Slot `contact-model`.
     pub contact_model: PluginTable,
     /// Slot `stability-test`.

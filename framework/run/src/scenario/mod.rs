@@ -195,6 +195,11 @@ fn choices(
     registry: &Registry,
 ) -> Result<Choices, ScenarioError> {
     let mut choices = Choices::default();
+    if let Some(name) = &tables.preset {
+        let preset = regrasp_host::preset(name)
+            .map_err(|error| document.refused(&error.refusal().told(&error).key("plugins.preset")))?;
+        preset.apply(&mut choices);
+    }
     for slot in Slot::ALL {
         let table = tables.table(slot);
         if table.id.is_none() && table.settings.is_empty() {

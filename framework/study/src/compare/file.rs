@@ -2,10 +2,11 @@
 
 use super::{Change, VariantDraft, factorial};
 use regrasp_api::{Refuse, Slot};
-use regrasp_host::{Registry, slot_by_name};
+use regrasp_host::{PresetChange, PresetLine, Registry, preset, slot_by_name};
 use regrasp_run::scenario::{self, Document, PluginTable, PluginTables, Scenario, ScenarioError, key_path};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Map;
 use std::path::Path;
 
 /// How many seeds a study may have.
@@ -124,7 +125,7 @@ pub fn load_study(path: &Path, registry: &Registry) -> Result<StudyRequest, Scen
     let content: StudyFile = document.read()?;
     let variants = variants(&document, &content, registry)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let base = changes(&content.plugins);
+    let base = changes(&document, &content.plugins, "plugins")?;
     base.iter().try_for_each(|change| check_plugin(&document, change, "plugins", registry))?;
     let mut scenarios = Vec::new();
     for name in scenario_names(&document, &content, folder)? {
@@ -184,8 +185,8 @@ fn variants(
         return Ok(factorial(&factors.collect::<Result<Vec<_>, _>>()?));
     }
     let drafts = content.variant.iter().enumerate().map(|(i, table)| {
-        let changes = changes(&table.plugins);
         let key = format!("variant[{i}].plugins");
+        let changes = changes(document, &table.plugins, &key)?;
         changes.iter().try_for_each(|change| check_plugin(document, change, &key, registry))?;
         Ok(VariantDraft { name: table.name.clone(), changes })
     });
@@ -219,10 +220,26 @@ fn change(slot: Slot, table: &PluginTable) -> Change {
     Change { slot, id: table.id.clone(), settings: table.settings.clone() }
 }
 
-/// What tables of plugins change.
-fn changes(tables: &PluginTables) -> Vec<Change> {
+/// What tables of plugins change, the preset that they name first.
+fn changes(document: &Document, tables: &PluginTables, key: &str) -> Result<Vec<Change>, ScenarioError> {
+    let mut all = Vec::new();
+    if let Some(name) = &tables.preset {
+        let key = format!("{key}.preset");
+        let refuse =
+            |error: regrasp_host::HostError| document.refuse(&key_path(&key), format!("`{key}`: {error}"));
+        all.extend(preset(name).map_err(refuse)?.lines.iter().map(preset_change));
+    }
     let changes = Slot::ALL.into_iter().map(|slot| change(slot, tables.table(slot)));
-    changes.filter(|change| change.id.is_some() || !change.settings.is_empty()).collect()
+    all.extend(changes.filter(|change| change.id.is_some() || !change.settings.is_empty()));
+    Ok(all)
+}
+
+fn preset_change(line: &PresetLine) -> Change {
+    let (id, settings) = match line.change {
+        PresetChange::Use(id) => (Some(id.to_owned()), Map::new()),
+        PresetChange::Set(key, _) => (None, Map::from_iter([(key.to_owned(), line.value())])),
+    };
+    Change { slot: line.slot, id, settings }
 }
 
 fn check_plugin(

@@ -71,6 +71,8 @@ pub fn solved(study: &Study, key: RunKey, planning_s: f64) -> RunRecord {
             generated_nodes: 40,
             graph_nodes: 9,
             components: 1,
+            roadmap: Default::default(),
+            collision_tests: 500,
             goals_reached: 1,
             notes: BTreeMap::new(),
             plugins: BTreeMap::from([(Slot::Sampler, plugin)]),

@@ -59,7 +59,8 @@ impl<'a> Machinery<'a> {
         match run {
             Ok(run) => {
                 let hand = setup.scenario().hand.as_ref();
-                let record = RunRecord::of_run(name, &run, hand, meter.roles_s(run.planning_s));
+                let mut record = RunRecord::of_run(name, &run, hand, meter.roles_s(run.planning_s));
+                record.counts.collision_tests = meter.collision_tests();
                 (record, run.plan)
             }
             Err(error) => (RunRecord::of_error(name, &error), None),

@@ -42,6 +42,8 @@ impl RunRecord {
                 generated_nodes: statistics.generated_nodes,
                 graph_nodes: statistics.graph_nodes,
                 components: statistics.components,
+                roadmap: statistics.roadmap,
+                collision_tests: 0,
                 goals_reached: outcome.goal_ends.len(),
                 plugins: statistics.plugins.clone(),
                 notes: regrasp_plan::plugin_notes(&outcome.tally),

@@ -1,7 +1,7 @@
 //! What a study keeps of one run: a row of `runs.csv`, a line of `runs.jsonl`.
 
 use regrasp_api::Slot;
-use regrasp_plan::{PluginNotes, PluginStatistics};
+use regrasp_plan::{PluginNotes, PluginStatistics, RoadmapStatistics};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -63,12 +63,16 @@ pub struct Times {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Counts {
-    /// Nodes that the search generated.
+    /// Nodes that the search generated: samples that gave a grasp, kept or not.
     pub generated_nodes: usize,
     /// Nodes of the final manipulation graph.
     pub graph_nodes: usize,
     /// Components of the final manipulation graph.
     pub components: usize,
+    /// The graph's part in GS_n, and what became of it.
+    pub roadmap: RoadmapStatistics,
+    /// Questions of collision or distance that planning asked, one of which may be about several bodies; 0 where nobody counted.
+    pub collision_tests: u64,
     /// Goals that the motion reaches; all of them exactly where the run is solved.
     pub goals_reached: usize,
     /// Calls of the plugin in each slot, and its rejections by cause; slots that were not called are left out.

@@ -3,7 +3,7 @@
 use super::timed::{CLEARANCE, FRAMEWORK};
 use super::{Certified, MotionFigures, PHASES, RunRecord, Study, csv};
 use regrasp_api::{Figure, Reason, Slot};
-use regrasp_plan::PluginChoice;
+use regrasp_plan::{PluginChoice, RoadmapStatistics};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 
@@ -68,11 +68,23 @@ fn time_columns() -> Vec<Column> {
     columns
 }
 
-fn count_columns() -> [Column; 4] {
+fn count_columns() -> [Column; 13] {
+    let roadmap = |name: &str, count: fn(&RoadmapStatistics) -> usize| {
+        column(name, move |run: &RunRecord, _: &Plugins| count(&run.counts.roadmap).to_string())
+    };
     [
         column("generated_nodes", |run, _| run.counts.generated_nodes.to_string()),
         column("graph_nodes", |run, _| run.counts.graph_nodes.to_string()),
         column("components", |run, _| run.counts.components.to_string()),
+        roadmap("kept_nodes", |roadmap| roadmap.kept_nodes),
+        roadmap("grasp_components", |roadmap| roadmap.grasp_components),
+        roadmap("largest_grasp_component", |roadmap| roadmap.largest_grasp_component),
+        roadmap("used_grasp_edges", |roadmap| roadmap.used_grasp_edges),
+        roadmap("used_transfer_edges", |roadmap| roadmap.used_transfer_edges),
+        roadmap("decompositions", |roadmap| roadmap.decompositions),
+        roadmap("failed_decompositions", |roadmap| roadmap.failed_decompositions),
+        roadmap("restarts", |roadmap| roadmap.restarts),
+        column("collision_tests", |run, _| run.counts.collision_tests.to_string()),
         column("goals_reached", |run, _| run.counts.goals_reached.to_string()),
     ]
 }

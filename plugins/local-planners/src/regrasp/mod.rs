@@ -16,6 +16,11 @@ pub(crate) const SLOT: Slot = Slot::RegraspPlanner;
 
 /// Another way between two lifted postures, where the direct one is barred.
 pub(crate) trait Detour {
+    /// Whether it is taken without a try of the direct way.
+    fn comes_first(&self) -> bool {
+        false
+    }
+
     /// Appends a way from `ends.0`, without it, to `ends.1` to the postures; false if there is none to be found.
     fn search(
         &self,
@@ -136,7 +141,12 @@ impl Regrasping<'_> {
         let a = *scratch.postures.last().unwrap_or(ends.0.joints);
         let b = *scratch.descent.last().unwrap_or(ends.1.joints);
         let lifted = scratch.postures.len();
-        if let Err(reason) = direct(flight, ends, (low, high), (&a, &b), scratch, context)? {
+        let barred = if self.detour.comes_first() {
+            Err(Reason::Budget)
+        } else {
+            direct(flight, ends, (low, high), (&a, &b), scratch, context)?
+        };
+        if let Err(reason) = barred {
             scratch.postures.truncate(lifted);
             if !self.detour.search(flight, (&a, &b), &mut scratch.postures, context)? {
                 return Ok(Some(reason));

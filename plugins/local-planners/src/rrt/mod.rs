@@ -28,11 +28,13 @@ pub struct RrtSettings {
     /// Tries to shorten the path that the trees find. Our choice.
     #[schemars(range(min = 0, max = 10_000))]
     pub shortcuts: usize,
+    /// Whether the way along the geodesic is tried before the trees. The paper searches every regrasp by RRT (section IV.C).
+    pub direct: bool,
 }
 
 impl Default for RrtSettings {
     fn default() -> Self {
-        Self { nodes: 60, extend: 0.03, shortcuts: 12 }
+        Self { nodes: 60, extend: 0.03, shortcuts: 12, direct: true }
     }
 }
 
@@ -70,6 +72,10 @@ impl Rrt {
 }
 
 impl Detour for RrtSettings {
+    fn comes_first(&self) -> bool {
+        !self.direct
+    }
+
     fn search(
         &self,
         flight: &Flight<'_>,

@@ -61,6 +61,7 @@ pub(crate) struct Meter<'a> {
     tick_s: f64,
     self_s: [Seconds; SOURCES],
     calls: [AtomicU32; SOURCES],
+    collision_tests: AtomicU64,
     /// What others took within the innermost call that is being timed.
     inner_s: Seconds,
 }
@@ -69,7 +70,7 @@ impl<'a> Meter<'a> {
     /// A meter at zero; reading `clock` takes `tick_s`.
     pub fn new(clock: &'a dyn Clock, tick_s: f64) -> Self {
         let (self_s, calls) = (Default::default(), Default::default());
-        Self { clock, tick_s, self_s, calls, inner_s: Seconds::default() }
+        Self { clock, tick_s, self_s, calls, collision_tests: AtomicU64::new(0), inner_s: Seconds::default() }
     }
 
     /// A call that may lead to calls of others.
@@ -84,6 +85,9 @@ impl<'a> Meter<'a> {
 
     /// A call that leads to no calls of others.
     pub fn leaf<R>(&self, source: Source, call: impl FnOnce() -> R) -> R {
+        if source == Source::Clearance {
+            self.collision_tests.fetch_add(1, Ordering::Relaxed);
+        }
         let count = &self.calls[source.number()];
         let number = count.load(Ordering::Relaxed).wrapping_add(1);
         // The middle of each period is timed: the first calls of a run are not like the others.
@@ -103,6 +107,11 @@ impl<'a> Meter<'a> {
         let begin = self.clock.seconds();
         let answer = call();
         (answer, (self.clock.seconds() - begin - self.tick_s).max(0.0))
+    }
+
+    /// How often clearance was asked.
+    pub fn collision_tests(&self) -> u64 {
+        self.collision_tests.load(Ordering::Relaxed)
     }
 
     /// Self times by name, in all `planning_s`: the framework has the rest.
@@ -160,6 +169,8 @@ mod tests {
             (0..periods).for_each(|_| meter.leaf(Source::Slot(Slot::StabilityTest), || clock.0.add(0.5)));
             clock.0.add(3.0);
         });
+        (0..3).for_each(|_| meter.leaf(Source::Clearance, || ()));
+        assert_eq!(meter.collision_tests(), 3, "stability tests are none");
         let leaves = f64::from(periods) * 0.5;
         let roles = meter.roles_s(10.0 + leaves);
         assert_eq!(roles["sampler"], 4.0);

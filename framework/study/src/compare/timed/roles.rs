@@ -4,8 +4,8 @@ use super::Timed;
 use regrasp_api::{
     Action, Assessment, CallError, ClosedChainSampler, Cone, Configuration, Contact, ContactModel, Context,
     Criterion, FingerIndex, FingerSet, GraphStrategy, GraphView, Grasp, Hint, LocalPlanner, Path, PerFinger,
-    Pose, PoseRequest, Projection, Random, Reached, Stability, StabilityTest, SurfaceParam, SurfacePath,
-    Target, Task, Vec3,
+    Pose, PoseRequest, Projection, Random, Reached, SearchPolicy, Stability, StabilityTest, SurfaceParam,
+    SurfacePath, Target, Task, Vec3,
 };
 
 impl ContactModel for Timed<'_, dyn ContactModel + '_> {
@@ -136,5 +136,9 @@ impl LocalPlanner for Timed<'_, dyn LocalPlanner + '_> {
 impl GraphStrategy for Timed<'_, dyn GraphStrategy + '_> {
     fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError> {
         self.outer(|strategy| strategy.next(graph, context))
+    }
+
+    fn policy(&self) -> SearchPolicy {
+        self.outer(|strategy| strategy.policy())
     }
 }
