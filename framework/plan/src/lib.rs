@@ -30,3 +30,6 @@ pub use statistics::*;
 pub use surface::*;
 pub use timing::*;
 pub use write::*;
+
+/// How the names of files begin and end that are being written: those that a killed process left behind may be deleted.
+pub const TEMPORARY: (&str, &str) = (".regrasp-", ".tmp");

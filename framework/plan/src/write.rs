@@ -1,6 +1,6 @@
 //! Writing plan files, so that a failure never costs what was there before.
 
-use crate::{ContactSurface, Plan, StateRecord, WriteError, write_json};
+use crate::{ContactSurface, Plan, StateRecord, TEMPORARY, WriteError, write_json};
 use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -35,9 +35,6 @@ pub fn check_place(path: &Path) -> Result<(), WriteError> {
         }
     }
 }
-
-/// How the names of files begin and end that are being written: those that a killed process left behind may be deleted.
-pub const TEMPORARY: (&str, &str) = (".regrasp-", ".tmp");
 
 /// What a path stands for.
 enum Target {

@@ -189,9 +189,12 @@ impl ScaledGrasp {
     }
 }
 
+/// The id of the test that weighs a load.
+pub(crate) const EQUILIBRIUM: &str = "stability-test/equilibrium";
+
 /// What to use where cones are polyhedral; the tests that take them are no substitute for `equilibrium`, which alone weighs a load.
 fn instead(plugin: &str) -> &'static str {
-    if plugin == crate::equilibrium::ID {
+    if plugin == EQUILIBRIUM {
         "use an elliptic contact model, such as `contact-model/pcwf` or `contact-model/soft-finger`; `stability-test/force-closure` \
          takes polyhedral cones, but asks for closure, whatever the load"
     } else {

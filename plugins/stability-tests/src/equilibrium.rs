@@ -9,7 +9,7 @@ use regrasp_api::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub(crate) const ID: &str = "stability-test/equilibrium";
+pub(crate) const ID: &str = crate::contacts::EQUILIBRIUM;
 /// How far apart the bounds of a reported margin are, relative to the factor.
 const MARGIN_GAP: f64 = 0.005;
 /// The largest factor of the disturbances that a margin tells of.

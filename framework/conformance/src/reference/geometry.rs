@@ -66,6 +66,12 @@ fn on_ellipsoid(semi_axes: &Vec3, p: &Vec3) -> Vec3 {
     at(high)
 }
 
+/// The facets that hold a point.
+pub(super) fn facets_at(mesh: &Mesh, p: &Vec3) -> Vec<u32> {
+    let near = |&facet: &u32| (closest_on_facet(mesh, facet, p) - p).norm() < 1e-9;
+    (0..mesh.facets().len() as u32).filter(near).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

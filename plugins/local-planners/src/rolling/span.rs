@@ -1,6 +1,6 @@
 //! The motion that two consecutive states mean: does the contact stay closed in between?
 
-use super::step::{Roller, to_object};
+use super::roller::{Roller, to_object};
 use regrasp_api::{Contact, FingerIndex, FingerJoints, Pose, TipKinematics, Vec3, interpolate};
 
 /// Two states of one finger and what is known halfway.

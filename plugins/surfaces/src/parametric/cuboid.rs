@@ -1,6 +1,6 @@
 //! A box: straight lines over unfolded faces.
 
-use super::form::{Curve, Form};
+use super::curve::{Curve, Form};
 use crate::polyhedron::Planar;
 use regrasp_api::Vec3;
 

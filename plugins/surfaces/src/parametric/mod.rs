@@ -23,6 +23,7 @@
 //! have to leap (torus).
 
 mod cuboid;
+mod curve;
 mod facets;
 mod form;
 mod rim;
@@ -30,7 +31,8 @@ mod smooth;
 mod sphere;
 mod tube;
 
-pub use form::{ClosedForm, Curve};
+pub use curve::Curve;
+pub use form::ClosedForm;
 
 use crate::hollows::Room;
 use crate::lift::Leg;

@@ -1,7 +1,7 @@
 //! Problems for local planners: starts and targets.
 
+use crate::calls::{context, random};
 use crate::fixtures::{Bench, to_hand};
-use crate::law::{context, random};
 use crate::reference::{Closure, RejectionSampler, closure};
 use regrasp_api::{
     ClosedChainSampler, Configuration, Contact, FingerIndex, FingerJoints, FingerSet, Hand, PerFinger, Pose,

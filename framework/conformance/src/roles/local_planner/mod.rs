@@ -3,21 +3,16 @@
 mod answer;
 mod case;
 mod inspect;
+mod journey;
 mod special;
 mod way;
 
 use crate::law::{Law, Subject, context};
 use crate::report::{Finding, broken};
 use case::{Case, cases};
+pub(crate) use journey::Journey;
 use regrasp_api::{Build, BuildError, CallError, LocalPlanner, Path, Reached, Slot};
 use std::rc::Rc;
-
-/// What the plugin made of one problem.
-pub(crate) struct Journey {
-    case: &'static Case,
-    reached: Reached,
-    path: Path,
-}
 
 /// A slot as a type, so that one check serves all three.
 pub(crate) trait Kind {

@@ -1,7 +1,7 @@
 //! The geodesic equation x'' = -κ n, and the spread of neighbouring geodesics.
 
 use super::Smooth;
-use crate::parametric::form::Curve;
+use crate::parametric::curve::Curve;
 use regrasp_api::Vec3;
 
 /// A step's length times the surface's pace: fourth order leaves 2e-7 of the length on flat ellipsoids, else far less.

@@ -14,7 +14,7 @@ mod torus;
 pub(super) use ellipsoid::Ellipsoid;
 pub(super) use torus::Torus;
 
-use super::form::{Curve, Form};
+use super::curve::{Curve, Form};
 use chain::Chain;
 use flow::{Heading, Spread};
 use regrasp_api::Vec3;

@@ -8,7 +8,7 @@ mod crossing;
 mod least;
 mod straight;
 
-use super::form::{Curve, Form};
+use super::curve::{Curve, Form};
 use super::sphere::Sphere;
 use crossing::Crossing;
 use least::least;
