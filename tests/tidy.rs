@@ -16,6 +16,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-world", &["regrasp-api"]),
     ("regrasp-hands", &["regrasp-api", "regrasp-formats", "regrasp-world"]),
     ("regrasp-plan", &["regrasp-api"]),
+    ("regrasp-fingerprint", &[]),
     ("regrasp-abi", &["regrasp-api"]),
     ("regrasp-host", &["regrasp-abi", "regrasp-api"]),
     ("regrasp-planner", &["regrasp-abi", "regrasp-api", "regrasp-plan"]),
@@ -59,6 +60,7 @@ const PRIVATE: &[(&str, &[&str])] = &[
     ("clap", &["regrasp"]),
     ("rapier3d-f64", &["regrasp-physics"]),
     ("faer", &["regrasp-surfaces"]),
+    ("proc-macro2", &["regrasp-fingerprint"]),
     ("rand", &[]),
 ];
 

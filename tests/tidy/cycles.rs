@@ -1,7 +1,8 @@
 //! Which files of a crate use each other in a circle.
 //!
-//! A file uses another one where a path in it (`use` or in place) leads to an item that the other defines, re-exports followed. What a
-//! file takes from the file of a folder that it lies in is no circle: the two are one room.
+//! A file uses another one where a path in it (`use` or in place) leads to an item that the other defines,
+//! re-exports followed. What a file takes from the file of a folder that it lies in is no circle: the two are
+//! one room.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

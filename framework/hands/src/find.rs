@@ -6,9 +6,11 @@ use crate::tree::Tree;
 use regrasp_formats::RobotFault as Fault;
 
 impl Fingers {
-    /// The fingers to the given tips, or to guessed ones; the palm is given, or the last link that all tips hang on.
+    /// The fingers to the given tips, or to guessed ones; the palm is given, or the last link that all tips
+    /// hang on.
     ///
-    /// A guess leaves out what cannot be a finger. Where it makes no hand of the whole file, the one link that carries a hand is the palm.
+    /// A guess leaves out what cannot be a finger. Where it makes no hand of the whole file, the one link
+    /// that carries a hand is the palm.
     pub fn find(tree: &Tree<'_>, tips: &[String], palm: Option<&str>) -> Result<Self, Fault> {
         let palm = palm.map(|name| tree.link(name).ok_or_else(|| unknown(tree, "palm", name))).transpose()?;
         if !tips.is_empty() {

@@ -18,7 +18,8 @@ pub struct PoseDescription {
     #[schemars(extend("examples" = [[0.707, 0.0, 0.0, 0.707]]))]
     #[schemars(extend("x-unit" = "1"))]
     pub orientation: Option<[f64; 4]>,
-    /// Orientation as a turn about this axis (a direction, of any length), instead of a quaternion; needs `angle_deg`.
+    /// Orientation as a turn about this axis (a direction, of any length), instead of a quaternion; needs
+    /// `angle_deg`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-unit" = "1"))]
     pub axis: Option<[f64; 3]>,

@@ -52,8 +52,9 @@ fn on_cuboid(half: &Vec3, p: &Vec3) -> (Vec3, bool) {
     (point, inside)
 }
 
-/// The closest point of an ellipsoid: x_i = a_i² p_i / (t + a_i²) with the largest root t of the condition that it lies on the surface
-/// (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid", 2013), by bisection.
+/// The closest point of an ellipsoid: x_i = a_i² p_i / (t + a_i²) with the largest root t of the condition
+/// that it lies on the surface (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a
+/// hyperellipsoid", 2013), by bisection.
 fn on_ellipsoid(semi_axes: &Vec3, p: &Vec3) -> Vec3 {
     let square = semi_axes.component_mul(semi_axes);
     let at = |t: f64| p.zip_map(&square, |x, a| x * a / (t + a));
@@ -78,8 +79,8 @@ mod tests {
     use regrasp_api::Mesh;
     use regrasp_world::primitive_mesh;
 
-    /// Whether the facets' solid angles add up to a full sphere (Van Oosterom & Strackee, "The solid angle of a plane triangle", IEEE
-    /// Trans. Biomed. Eng. 1983).
+    /// Whether the facets' solid angles add up to a full sphere (Van Oosterom & Strackee, "The solid angle of
+    /// a plane triangle", IEEE Trans. Biomed. Eng. 1983).
     fn is_inside(mesh: &Mesh, p: &Vec3) -> bool {
         let angle = |facet: u32| {
             let [a, b, c] = mesh.corners(facet).map(|corner| corner - p);

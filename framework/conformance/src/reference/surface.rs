@@ -12,8 +12,8 @@ const SHARP: f64 = std::f64::consts::PI / 6.0;
 
 /// The facets of a mesh under a fingertip.
 ///
-/// Shortest paths run over points on the edges (Lanthier, Maheshwari, Sack, "Approximating weighted shortest paths on polyhedral
-/// surfaces", SoCG 1997) and are up to 1 % too long.
+/// Shortest paths run over points on the edges (Lanthier, Maheshwari, Sack, "Approximating weighted shortest
+/// paths on polyhedral surfaces", SoCG 1997) and are up to 1 % too long.
 pub struct FacetSurface {
     mesh: Mesh,
     radius: f64,

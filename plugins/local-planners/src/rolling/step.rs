@@ -77,8 +77,8 @@ impl Roller<'_> {
         ContactJacobian::new(tip, joints, &n_H, self.radius).speeds(&v_H)
     }
 
-    /// Makes `next` the state a part `h` of the motion further, or says why there is none (then `next` means nothing). Collision
-    /// and stability are not looked at.
+    /// Makes `next` the state a part `h` of the motion further, or says why there is none (then `next` means
+    /// nothing). Collision and stability are not looked at.
     pub fn advance(&self, state: &State, h: f64, next: &mut State) -> Result<(), Failure> {
         next.clone_from(state);
         // The last step ends at 1 exactly, whatever the sum of the steps before it.
@@ -105,8 +105,8 @@ impl Roller<'_> {
 
     /// One finger's step: joints and contact at its end.
     ///
-    /// The midpoint rule moves the fingertip's centre; then the centre is moved along the normal onto the offset surface and inverse
-    /// kinematics gives the joints, so that closure never drifts.
+    /// The midpoint rule moves the fingertip's centre; then the centre is moved along the normal onto the
+    /// offset surface and inverse kinematics gives the joints, so that closure never drifts.
     fn roll(
         &self,
         state: &State,
@@ -142,10 +142,12 @@ impl Roller<'_> {
         if self.opens(&span) { Err(Failure::Finer) } else { Ok((joints, end)) }
     }
 
-    /// Slip (m, in O) over one step: how far the fingertip's material point at the contact moves along the object.
+    /// Slip (m, in O) over one step: how far the fingertip's material point at the contact moves along the
+    /// object.
     ///
-    /// In O the tip's centre moves by Δc while the tip turns by the vector θ; with the normal n half-way its point at the contact moves by
-    /// Δc - θ × r n, whose tangential part rolling makes zero. Exact on a facet, of third order in θ elsewhere.
+    /// In O the tip's centre moves by Δc while the tip turns by the vector θ; with the normal n half-way its
+    /// point at the contact moves by Δc - θ × r n, whose tangential part rolling makes zero. Exact on a
+    /// facet, of third order in θ elsewhere.
     fn slip_of(&self, a: &State, b: &State, finger: FingerIndex) -> Vec3 {
         let (at_a, at_b) = (touching(&a.q, finger), touching(&b.q, finger));
         let turn = (b.R_OF[finger] * a.R_OF[finger].inverse()).scaled_axis();

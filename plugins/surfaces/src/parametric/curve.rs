@@ -7,7 +7,8 @@ use regrasp_api::Vec3;
 pub struct Curve {
     /// Length (m) on the closed form.
     pub length: f64,
-    /// Points of the curve (m, in O), both ends included, neighbours no farther apart than was asked for; creases are among them.
+    /// Points of the curve (m, in O), both ends included, neighbours no farther apart than was asked for;
+    /// creases are among them.
     pub points: Vec<Vec3>,
 }
 
@@ -19,7 +20,8 @@ impl Curve {
         self.points.push(*from);
     }
 
-    /// Appends `count` equal parts of an arc of the given length (m); `at` gives the points for fractions in 0..1.
+    /// Appends `count` equal parts of an arc of the given length (m); `at` gives the points for fractions in
+    /// 0..1.
     pub(super) fn arc(&mut self, length: f64, spacing: f64, to: &Vec3, at: impl Fn(f64) -> Vec3) {
         let count = (length / spacing).ceil().max(1.0);
         self.points.extend((1..count as usize).map(|i| at(i as f64 / count)));
@@ -48,6 +50,7 @@ pub(super) trait Form: Send + Sync + std::fmt::Debug {
     /// The shortest path between two points of the surface.
     fn shortest(&self, a: &Vec3, b: &Vec3, spacing: f64, curve: &mut Curve);
 
-    /// The straightest path from a point of the surface along a tangent direction (not zero), of the given length (m).
+    /// The straightest path from a point of the surface along a tangent direction (not zero), of the given
+    /// length (m).
     fn walk(&self, from: &Vec3, along: &Vec3, distance: f64, spacing: f64, curve: &mut Curve);
 }

@@ -57,7 +57,8 @@ impl ClosedForm {
         }
     }
 
-    /// The straightest path from a point of the surface along the tangential part of a direction, of the given length (m).
+    /// The straightest path from a point of the surface along the tangential part of a direction, of the
+    /// given length (m).
     pub fn walk(&self, from: &Vec3, direction: &Vec3, distance: f64, spacing: f64, curve: &mut Curve) {
         curve.restart(from);
         if direction.norm() > 0.0 && distance > 0.0 {

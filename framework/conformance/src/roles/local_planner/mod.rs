@@ -189,7 +189,8 @@ fn journeys<K: Kind>(subject: &Subject<'_>) -> Finding<Rc<Vec<Journey>>> {
         let (task, target) = (case.bench.task(), case.goal.target());
         let reached =
             match planner.connect(&task, &case.from, &target, Some(&mut path), &mut context(key as u64)) {
-                // The plugin's law is for other hands or contact models: it says so, and is tried on the rest.
+                // The plugin's law is for other hands or contact models: it says so, and is tried on the
+                // rest.
                 Err(CallError::Unsupported { .. }) => continue,
                 reached => reached?,
             };
