@@ -1,6 +1,6 @@
 //! Closest points and signed distances in closed form; those over all facets are the audit's.
 
-use regrasp_api::{Primitive, Vec3};
+use regrasp_api::{Mesh, Primitive, Vec3};
 pub use regrasp_audit::{Closest, closest_on_facet, closest_on_mesh, closest_on_segment};
 
 /// The closest point of the closed form to `p` (m, in its frame).

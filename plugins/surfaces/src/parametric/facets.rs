@@ -5,7 +5,8 @@
 //! and ellipsoids, at right angles from the axis of capsules and the ring of a torus. A cylinder's section is
 //! shrunk to the mesh's polygon. Boxes are their mesh.
 
-use super::form::{ClosedForm, Curve};
+use super::curve::Curve;
+use super::form::ClosedForm;
 use super::rim::Rim;
 use crate::lift::Leg;
 use crate::polyhedron::Place;

@@ -11,7 +11,7 @@ use crate::law::{Law, Subject, context};
 use crate::report::{Finding, broken};
 use case::{Case, cases};
 pub(crate) use journey::Journey;
-use regrasp_api::{Build, BuildError, CallError, LocalPlanner, Path, Reached, Slot};
+use regrasp_api::{Build, BuildError, CallError, LocalPlanner, Path, Slot};
 use std::rc::Rc;
 
 /// A slot as a type, so that one check serves all three.
