@@ -68,7 +68,6 @@ struct Figures<'s> {
 
 impl Figures<'_> {
     fn segment(&mut self, leg: &Leg<'_>) -> Vec<StateFigures> {
-        self.contacts.start();
         self.stability.start();
         let mut figures: Vec<_> = (0..leg.states.len()).map(|state| self.state(leg, state)).collect();
         if let Some(finger) = leg.moving {

@@ -16,6 +16,7 @@ fn a_plan_made_by_hand_verifies() {
         "times",
         "velocities",
         "accelerations",
+        "controller",
         "joint-limits",
         "continuity",
         "rest",
