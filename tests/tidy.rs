@@ -20,7 +20,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-abi", &["regrasp-api"]),
     ("regrasp-host", &["regrasp-abi", "regrasp-api"]),
     ("regrasp-planner", &["regrasp-abi", "regrasp-api", "regrasp-plan"]),
-    ("regrasp-verify", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
+    ("regrasp-verify", &["regrasp-api", "regrasp-plan"]),
     ("regrasp-view", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
     ("regrasp-audit", &["regrasp-api"]),
     ("regrasp-conformance", &["regrasp-api", "regrasp-audit", "regrasp-world"]),

@@ -13,7 +13,7 @@ def tangents(n):
 
 
 def columns(points, normals, gamma):
-    """6 × 3n (4n with torsion) map from contact forces (normal, tangents, torsion) to wrenches, inward normals."""
+    """The 6 × 3n map (4n with torsion) from contact forces (normal, tangents, torsion) to wrenches."""
     blocks = []
     for p, n in zip(points, normals):
         directions = [-n, *tangents(-n)]
@@ -27,7 +27,8 @@ def columns(points, normals, gamma):
 def slack(points, normals, mu, gamma=0.0, load=None, most=None):
     """The largest t for which balanced forces exist with f_n - t ≥ |(f_t/μ, m/γ)| at every contact.
 
-    Without a load the normal forces sum to 1; with one they are at most `most - t` each. Points from the centre, in units of length.
+    Without a load the normal forces sum to 1; with one they are at most `most - t` each. Points are
+    taken from the centre, in units of length.
     """
     G = columns(points, normals, gamma)
     width, n = G.shape[1] // max(len(points), 1), len(points)

@@ -1,7 +1,7 @@
-"""A plan file as other people's programs see it: a hand in pinocchio, bodies in coal, the motion that the states mean.
+"""A plan file as other people's programs see it: a hand in pinocchio, bodies in coal, the meant motion.
 
-Nothing here comes from the project but the plan file: joints are placed by pinocchio, distances are coal's. SI units; H is the hand's
-frame, O the object's.
+Nothing here comes from the project but the plan file: joints are placed by pinocchio, distances are
+coal's. SI units; H is the hand's frame, O the object's.
 """
 
 import coal
@@ -50,7 +50,11 @@ class Hand:
                 axis = np.array(joint["axis"], float)
                 axis /= np.linalg.norm(axis)
                 sliding = joint.get("kind", "revolute") == "prismatic"
-                kind = pin.JointModelPrismaticUnaligned(axis) if sliding else pin.JointModelRevoluteUnaligned(axis)
+                kind = (
+                    pin.JointModelPrismaticUnaligned(axis)
+                    if sliding
+                    else pin.JointModelRevoluteUnaligned(axis)
+                )
                 name = f"{finger['name']}/{joint['name']}"
                 parent = self.model.addJoint(parent, kind, base * pose_of(joint.get("origin", {})), name)
                 base = pin.SE3.Identity()
@@ -99,7 +103,11 @@ def shape_of(shape):
         a, b = np.array(shape["from"]), np.array(shape["to"])
         along = b - a
         length = np.linalg.norm(along)
-        turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), along / length) if length else pin.Quaternion(1, 0, 0, 0)
+        turn = (
+            pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), along / length)
+            if length
+            else pin.Quaternion(1, 0, 0, 0)
+        )
         return coal.Capsule(shape["radius"], length), pin.SE3(turn.toRotationMatrix(), (a + b) / 2)
     if kind in ("box", "cuboid"):
         return coal.Box(*shape["size"]), pin.SE3.Identity()
@@ -178,7 +186,11 @@ class Bodies:
         hand, limits = problem["hand"], problem["limits"]
         self.hand.place(np.concatenate([finger["rest"] for finger in hand["finger"]]))
         close = limits["tolerances"]["clearance"] + limits["resolution"]["clearance"]
-        names = {joint["name"]: ("link", f, j) for f, finger in enumerate(hand["finger"]) for j, joint in enumerate(finger["joint"])}
+        names = {
+            joint["name"]: ("link", f, j)
+            for f, finger in enumerate(hand["finger"])
+            for j, joint in enumerate(finger["joint"])
+        }
         names |= {finger["name"]: ("tip", f) for f, finger in enumerate(hand["finger"])} | {"palm": "palm"}
         touching = [{names[a], names[b]} for a, b in hand.get("touching", [])]
         mounted = set()
@@ -209,12 +221,15 @@ class Bodies:
     def distance(self, a, b, X_HO):
         """Distance of two bodies (m), with the hand placed as it is."""
         result = coal.DistanceResult()
-        place = [coal.Transform3s(X.rotation, X.translation) for X in (self.placement(a, X_HO), self.placement(b, X_HO))]
+        place = [
+            coal.Transform3s(X.rotation, X.translation)
+            for X in (self.placement(a, X_HO), self.placement(b, X_HO))
+        ]
         request = coal.DistanceRequest()
         return coal.distance(self.bodies[a][1], place[0], self.bodies[b][1], place[1], request, result)
 
     def touch(self, finger, X_HO):
-        """Closest point of the object to a fingertip's centre, the direction from there, and the ball's gap; all in O."""
+        """Closest point of the object to a tip's centre, direction from there, and gap, in O."""
         c = X_HO.actInv(self.hand.tip(finger))
         result = coal.DistanceResult()
         request = coal.DistanceRequest()

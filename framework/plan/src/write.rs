@@ -125,6 +125,10 @@ fn not_finite(plan: &Plan) -> Option<String> {
     if !twin.is_none_or(twin_is_finite) {
         return Some("a value in the object's contact surface".into());
     }
+    let facets = plan.object.as_ref().and_then(|object| object.surface.as_ref());
+    if !facets.is_none_or(|facets| facets.vertices.iter().flatten().all(|x| x.is_finite())) {
+        return Some("a value in the object's facets".into());
+    }
     for (s, segment) in plan.segments.iter().enumerate() {
         if let Some(k) = segment.states.iter().position(|state| !is_finite(state)) {
             return Some(format!("a value in segment {s}, state {k},"));

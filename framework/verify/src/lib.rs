@@ -13,6 +13,7 @@ mod ends;
 mod hand;
 mod lift;
 mod motion_checks;
+mod object;
 mod rates;
 mod scene;
 mod series;

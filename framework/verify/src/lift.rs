@@ -126,9 +126,9 @@ impl<'s> LiftCheck<'s> {
         let tip = Body::Fingertip(regrasp_api::FingerIndex(finger as u8));
         let body = self.scene.bodies.iter().position(|solidity| solidity.body == tip);
         let motion = body.map_or(0.0, |body| self.scene.motion(body, leg, state)) * (end - start);
-        let demanded = self.tolerances.clearance;
+        let target = clearance.target();
         let bound = (a.height + b.height - motion) / 2.0;
-        if bound > demanded || a.height.min(b.height) <= demanded {
+        if bound > target || a.height.min(b.height) <= target {
             return; // Clear, or known not to be.
         }
         let fraction = (start + end) / 2.0;

@@ -39,7 +39,7 @@ impl std::error::Error for SeriesError {}
 /// transfers (a conic program for each grasp).
 pub fn series(plan: &Plan) -> Result<Vec<Vec<StateFigures>>, SeriesError> {
     let problem = &plan.scenario.problem;
-    let (hand, object) = prepare(problem).map_err(SeriesError)?;
+    let (hand, object) = prepare(plan).map_err(SeriesError)?;
     let unsound = |_| SeriesError("some states do not fit the hand; `verify` names them".into());
     let legs = track::legs(&plan.segments, &hand).map_err(unsound)?;
     let scene = Scene::new(problem, &object, &hand, &travel(&hand, &legs)).map_err(SeriesError)?;

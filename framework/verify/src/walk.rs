@@ -8,8 +8,8 @@ use crate::scene::Scene;
 use crate::stability::{HoldingCheck, HoldsCheck, StabilityCheck};
 use crate::track::{self, Frames, Leg, SAMPLES};
 use crate::verdict::{Gauge, Verdict};
-use crate::{claims, controller, ends, motion_checks, rates};
-use regrasp_api::{MAX_FINGERS, ObjectModel, ObjectShape, Problem, Tolerances, Vec3};
+use crate::{claims, controller, ends, motion_checks, object, rates};
+use regrasp_api::{MAX_FINGERS, ObjectModel, Tolerances, Vec3};
 use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 
 /// Verifies a plan. Whatever the plan holds, there is a verdict.
@@ -42,7 +42,7 @@ use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 /// Cost: about 0.1 ms for a state of four fingers on one core.
 pub fn verify(plan: &Plan) -> Verdict {
     let problem = &plan.scenario.problem;
-    let (hand, object) = match prepare(problem) {
+    let (hand, object) = match prepare(plan) {
         Ok(parts) => parts,
         Err(note) => return refuse(note),
     };
@@ -62,17 +62,10 @@ fn refuse(note: String) -> Verdict {
     Verdict::new(vec![form.check()], None)
 }
 
-pub(crate) fn prepare(problem: &Problem) -> Result<(Chains, ObjectModel), String> {
-    let hand = Chains::new(&problem.hand)?;
-    if let ObjectShape::Mesh(source) = &problem.object.shape
-        && source.file.is_some()
-    {
-        return Err("the object's mesh is in another file; a plan must stand alone".into());
-    }
-    let object = regrasp_world::load_object(&problem.object).map_err(|e| e.to_string())?;
-    // A plan that grants itself tolerances beyond all reason would pass everything else.
-    regrasp_world::check_limits(&problem.limits).map_err(|e| e.to_string())?;
-    Ok((hand, object))
+pub(crate) fn prepare(plan: &Plan) -> Result<(Chains, ObjectModel), String> {
+    let hand = Chains::new(&plan.scenario.problem.hand)?;
+    object::check_limits(&plan.scenario.problem.limits)?;
+    Ok((hand, object::object_of(plan)?))
 }
 
 /// How far from zero each joint comes, by its limits or by the plan.

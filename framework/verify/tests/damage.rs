@@ -54,6 +54,16 @@ fn form() {
     assert_eq!(failures(|p| p.scenario.problem.object.friction = -1.0), ["form"]);
     assert_eq!(failures(|p| p.scenario.problem.limits.tolerances.slip = f64::NAN), ["form"]);
     assert_eq!(failures(|p| p.scenario.problem.limits.tolerances.closure = 1.0), ["form"]);
+    assert_eq!(failures(|p| p.object = None), ["form"], "as in version 1");
+    let facets = |p: &mut Plan, change: fn(&mut Facets)| {
+        change(p.object.as_mut().unwrap().surface.as_mut().unwrap());
+    };
+    assert_eq!(failures(|p| facets(p, |f| f.vertices[3][1] += 1e-6)), ["form"]);
+    assert_eq!(failures(|p| facets(p, |f| f.facets.truncate(11))), ["form"]);
+    assert_eq!(
+        failures(|p| facets(p, |f| f.vertices.iter_mut().flatten().for_each(|x| *x *= 0.5))),
+        ["form"]
+    );
     let file = ObjectShape::Mesh(MeshSource { file: Some("cube.stl".into()), ..Default::default() });
     let verdict = judged(|p| p.scenario.problem.object.shape = file);
     assert_eq!(names(&verdict), ["form"]);

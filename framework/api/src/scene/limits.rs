@@ -10,7 +10,7 @@ pub struct Tolerances {
     /// Largest distance between a holding fingertip and the surface (m).
     #[schemars(range(min = 1e-7, max = 1e-2), extend("x-unit" = "m"))]
     pub closure: f64,
-    /// Largest net slip of a contact over one transfer (m).
+    /// Largest net slip of a contact from its finger's touch-down to its lift (m).
     #[schemars(range(min = 1e-7, max = 1e-2), extend("x-unit" = "m"))]
     pub slip: f64,
     /// Largest angle between a contact's normal and the surface's (rad).

@@ -11,8 +11,8 @@ use regrasp_api::{Configuration, FingerIndex, Hand, angle_between};
 /// The largest value of f (1 - f)² and f² (1 - f) over 0 ≤ f ≤ 1, times 2: how far the cubic leaves the chord, in units of the span times the
 /// difference of tangent and chord, for whatever speeds at the step's two ends.
 const BULGE: f64 = 8.0 / 27.0;
-/// The part of the deviation that is used: fingertips' Jacobians are those of a state, and change a little along a step.
-const USED_DEVIATION: f64 = 0.8;
+/// The part of the deviation that is used: Jacobians are those of a state, and change along a step.
+const USED_DEVIATION: f64 = 0.5;
 
 /// The whole motion in a row, states that segments share counted once.
 pub(super) struct Path {

@@ -144,6 +144,12 @@ pub fn by_hand(hand: &ChainHand, steps: usize) -> Motion {
     motion
 }
 
+/// Records the facets of the plan's object, after a change of it.
+pub fn record_object(plan: &mut Plan) {
+    let object = regrasp_world::load_object(&plan.scenario.problem.object).unwrap();
+    plan.object = Some(ObjectRecord { surface: Some(Facets::from(&object.mesh)), contact_surface: None });
+}
+
 /// A plan that holds everything it must.
 pub fn plan(steps: usize) -> Plan {
     let problem = problem();
@@ -170,7 +176,7 @@ pub fn plan_of(mut problem: Problem, hand: &ChainHand, motion: &Motion) -> Plan 
             plugins: BTreeMap::from([(Slot::ContactModel, choice)]),
         },
         seed: 0,
-        object: None,
+        object: Some(ObjectRecord { surface: Some(Facets::from(&object.mesh)), contact_surface: None }),
         notes: BTreeMap::new(),
         versions: BTreeMap::new(),
         claims: Claims {
