@@ -73,7 +73,7 @@ palm = [{ shape = { kind = \"box\", size = [0.08, 0.08, 0.02] } }, { shape = { k
 const SCENARIO: &str = "\
 # Scenario files
 
-A scenario is a problem in a TOML file: hand, object, obstacles, start and goals, and optionally the plugins that solve it and the limits they \
+A scenario is a problem in a TOML or JSON file: hand, object, obstacles, start and goals, and optionally the plugins that solve it and the limits they \
 keep. `regrasp scenarios sphere > mine.toml` writes one to start from, `regrasp schema > scenario.schema.json` the same rules as a JSON schema \
 for editors. What is wrong with a file is refused with its line and the allowed values.
 

@@ -139,7 +139,8 @@ impl Bench {
         Ok(PyArray1::from_vec(py, lengths))
     }
 
-    /// `count` admissible configurations in which the fingers of `holding` hold the object, by the scenario's sampler, each with a random
+    /// `count` admissible configurations in which the fingers of `holding` hold the object, by the
+    /// scenario's sampler, each with a random
     /// stream of its own; fewer where `tries` samples do not give as many.
     fn sample_grasps(
         &self,
@@ -169,7 +170,8 @@ impl Bench {
         Ok(found.into_iter().map(Configuration).collect())
     }
 
-    /// Bounds of the margins (n, 2) that the scenario's stability test gives the grasps of configurations, about the object's centre of mass.
+    /// Bounds of the margins (n, 2) that the scenario's stability test gives the grasps of configurations,
+    /// about the object's centre of mass.
     fn margins<'py>(
         &self,
         py: Python<'py>,

@@ -41,7 +41,10 @@ pub fn plugins(py: Python<'_>) -> PyResult<String> {
     let row = |entry: &regrasp::api::Entry| {
         let schema: Value = serde_json::from_str(&(entry.schema)()).unwrap_or_default();
         let slots: Vec<&str> = entry.slots.iter().map(|slot| slot.name()).collect();
-        json!({"id": entry.id, "slots": slots, "summary": entry.summary, "references": entry.references, "schema": schema})
+        json!({
+            "id": entry.id, "slots": slots, "summary": entry.summary, "references": entry.references,
+            "schema": schema,
+        })
     };
     Ok(Value::Array(registry.entries().map(row).collect()).to_string())
 }

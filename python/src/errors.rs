@@ -3,13 +3,14 @@
 use crate::roles::Stash;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use regrasp::api::Refuse;
+use regrasp::api::{Refusal, Refuse};
 use regrasp::host::HostError;
 use regrasp::run::RunError;
-use regrasp::run::scenario::{Place, ScenarioError};
+use regrasp::run::scenario::ScenarioError;
 use serde_json::{Value, json};
 
-/// An exception of the package: the class of this name in `regrasp._errors`, its message, and its fields as a JSON object.
+/// An exception of the package: the class of this name in `regrasp._errors`, its message, and its fields as
+/// a JSON object.
 pub fn exception(py: Python<'_>, class: &str, message: &str, fields: &Value) -> PyErr {
     let made = py
         .import("regrasp._errors")
@@ -20,52 +21,40 @@ pub fn exception(py: Python<'_>, class: &str, message: &str, fields: &Value) -> 
     }
 }
 
-/// The exception for a scenario that is refused.
-pub fn scenario(py: Python<'_>, error: &ScenarioError) -> PyErr {
-    let mut fields = match error {
-        ScenarioError::Unknown { what, name, near, known } => {
-            json!({"key": what, "value": name, "remedy": near.first().unwrap_or(&known.join(", "))})
-        }
-        ScenarioError::Unreadable { place, .. }
-        | ScenarioError::Syntax { place, .. }
-        | ScenarioError::Form { place, .. }
-        | ScenarioError::Value { place, .. }
-        | ScenarioError::Plugin { place, .. } => place_fields(place),
-        ScenarioError::Range { place, value, range } => {
-            let mut fields = place_fields(place);
-            fields["value"] = json!(value);
-            fields["range"] = json!(range);
-            fields
-        }
-        _ => json!({}),
-    };
-    if let ScenarioError::Plugin { error, .. } = error {
-        fields["cause"] = json!(error.to_string());
-    }
-    exception(py, "ScenarioError", &error.to_string(), &fields)
+/// What a refusal says, as the fields of an exception.
+fn fields(refusal: &Refusal) -> Value {
+    json!({
+        "code": refusal.code, "file": refusal.file, "line": refusal.line, "key": refusal.key,
+        "value": refusal.value, "range": refusal.range, "remedy": refusal.remedy,
+    })
 }
 
-fn place_fields(place: &Place) -> Value {
-    json!({"file": place.file, "key": place.key, "line": place.line, "excerpt": place.excerpt})
+/// The exception for a scenario that is refused.
+pub fn scenario(py: Python<'_>, error: &ScenarioError) -> PyErr {
+    exception(py, "ScenarioError", &error.to_string(), &fields(&error.refusal()))
 }
 
 /// The exception for a plugin that is refused.
 pub fn host(py: Python<'_>, error: &HostError) -> PyErr {
-    let fields = match error {
+    let mut fields = fields(&error.refusal());
+    match error {
         HostError::UnknownPlugin { slot, id, near, known } => {
             let remedy = if near.is_empty() { known } else { near };
-            json!({"slot": slot.name(), "plugin": id, "remedy": remedy})
+            fields["slot"] = json!(slot.name());
+            fields["plugin"] = json!(id);
+            fields["remedy"] = json!(remedy.join(", "));
         }
-        HostError::UnknownSlot { name, near } => json!({"slot": name, "remedy": near}),
-        HostError::WrongSlot { slot, id, fits } => {
-            json!({"slot": slot.name(), "plugin": id, "remedy": fits})
+        HostError::UnknownSlot { name, near } => {
+            fields["slot"] = json!(name);
+            fields["remedy"] = json!(near.join(", "));
         }
-        HostError::Settings { id, .. } | HostError::Build { id, .. } => {
-            let refusal = error.refusal();
-            json!({"plugin": id, "key": refusal.key, "value": refusal.value, "range": refusal.range})
+        HostError::WrongSlot { slot, id, .. } => {
+            fields["slot"] = json!(slot.name());
+            fields["plugin"] = json!(id);
         }
-        _ => json!({}),
-    };
+        HostError::Settings { id, .. } | HostError::Build { id, .. } => fields["plugin"] = json!(id),
+        _ => {}
+    }
     exception(py, "PluginError", &error.to_string(), &fields)
 }
 
@@ -78,8 +67,8 @@ fn of_run(py: Python<'_>, error: &RunError) -> PyErr {
     match error {
         RunError::Scenario(error) => scenario(py, error),
         RunError::Host(error) => host(py, error),
-        RunError::Call(error) => exception(py, "PluginError", &error.to_string(), &json!({})),
-        error => exception(py, "RegraspError", &error.to_string(), &json!({})),
+        RunError::Call(_) => exception(py, "PluginError", &error.to_string(), &fields(&error.refusal())),
+        error => exception(py, "RegraspError", &error.to_string(), &fields(&error.refusal())),
     }
 }
 

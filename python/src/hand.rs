@@ -51,7 +51,8 @@ impl Hand {
         Ok(Self { hand: Arc::new(loaded.hand), notes: loaded.remarks })
     }
 
-    /// The description with everything resolved, and what a user should know of how it was understood, as JSON.
+    /// The description with everything resolved, and what a user should know of how it was understood, as
+    /// JSON.
     fn describe(&self) -> String {
         let fingers: Vec<_> = (0..self.hand.finger_count())
             .map(|index| {
@@ -72,8 +73,11 @@ impl Hand {
             .collect();
         let description = self.hand.description();
         let radius = self.hand.fingertip_radius();
-        json!({"fingers": fingers, "notes": self.notes, "description": description, "fingertip_radius": radius})
-            .to_string()
+        json!({
+            "fingers": fingers, "notes": self.notes, "description": description,
+            "fingertip_radius": radius,
+        })
+        .to_string()
     }
 
     /// Fingertip centres in H (n, 3) for postures (n, joints) of one finger.
@@ -117,7 +121,8 @@ impl Hand {
         PyArray1::from_vec(py, flat).reshape([count, 3, columns])
     }
 
-    /// Postures (n, joints) that bring the fingertip to centres (n, 3) in H, close to `near` (n, joints); NaN where out of reach.
+    /// Postures (n, joints) that bring the fingertip to centres (n, 3) in H, close to `near` (n, joints);
+    /// NaN where out of reach.
     fn ik<'py>(
         &self,
         py: Python<'py>,

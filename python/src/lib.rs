@@ -1,10 +1,12 @@
 //! The native half of the Python package `regrasp`: the planner's façade as Python classes and functions.
 //!
-//! What crosses the border is numpy arrays, and JSON text for trees; `package/regrasp` makes of it what a user sees. The module is private:
+//! What crosses the border is numpy arrays, and JSON text for trees; `package/regrasp` makes of it what a
+//! user sees. The module is private:
 //! its form may change with any version.
 
 mod answer;
 mod bench;
+mod compare;
 mod conformance;
 mod errors;
 mod hand;
@@ -21,6 +23,8 @@ mod watch;
 mod _regrasp {
     #[pymodule_export]
     use super::bench::Bench;
+    #[pymodule_export]
+    use super::compare::{digest, merge_studies, run_study};
     #[pymodule_export]
     use super::conformance::{conformance, plugins};
     #[pymodule_export]

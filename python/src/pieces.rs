@@ -95,7 +95,8 @@ pub fn force_closure<'py>(
     Ok(PyArray1::from_vec(py, verdicts))
 }
 
-/// Bounds (n, 2) of the margin of each grasp; torques about `centers` (n, 3) and divided by `length`, by the grasp's own where NaN.
+/// Bounds (n, 2) of the margin of each grasp; torques about `centers` (n, 3) and divided by `length`, by the
+/// grasp's own where NaN.
 #[pyfunction]
 pub fn closure_margins<'py>(
     py: Python<'py>,
@@ -113,7 +114,8 @@ pub fn closure_margins<'py>(
     PyArray1::from_vec(py, margins.concat()).reshape([grasps.count, 2])
 }
 
-/// A force for each contact (n, k, 3), in O on the object, balanced and strictly inside the cones; NaN where there is none.
+/// A force for each contact (n, k, 3), in O on the object, balanced and strictly inside the cones; NaN where
+/// there is none.
 #[pyfunction]
 pub fn internal_forces<'py>(
     py: Python<'py>,

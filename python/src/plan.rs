@@ -5,11 +5,15 @@ use crate::watch::{Watch, beside};
 use crate::{errors, table::Table};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
+use regrasp::export::{ExportError, Format, Scene};
 use regrasp::plan::{self, SegmentName};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// Names and contents of files.
+type Exported = Vec<(String, Py<PyBytes>)>;
 
 /// A plan as its file holds it.
 #[pyclass(frozen, module = "regrasp._regrasp")]
@@ -80,13 +84,34 @@ impl Plan {
     /// The states as arrays: `time` (S), `pose` (S, 7), `joints` (S, J), `contact` (S, F, 3, 3).
     fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let table = py.detach(|| table(&self.0)).map_err(|error| errors::plan_file(py, &error))?;
-        let Table { states, fingers, joints, time, pose, q, contact } = table;
+        let Table { states, fingers, joints, time, pose, q, contact, velocity, force, effort } = table;
         let arrays = PyDict::new(py);
         arrays.set_item("time", PyArray1::from_vec(py, time))?;
         arrays.set_item("pose", PyArray1::from_vec(py, pose).reshape([states, 7])?)?;
         arrays.set_item("joints", PyArray1::from_vec(py, q).reshape([states, joints])?)?;
         arrays.set_item("contact", PyArray1::from_vec(py, contact).reshape([states, fingers, 3, 3])?)?;
+        let by_joint = [("velocity", velocity), ("effort", effort)];
+        for (name, column) in by_joint.into_iter().filter(|(_, column)| !column.is_empty()) {
+            arrays.set_item(name, PyArray1::from_vec(py, column).reshape([states, joints])?)?;
+        }
+        if !force.is_empty() {
+            arrays.set_item("force", PyArray1::from_vec(py, force).reshape([states, fingers, 3])?)?;
+        }
         Ok(arrays)
+    }
+
+    /// Files for other programs, by name, and what a user should know of them.
+    fn export(&self, py: Python<'_>, format: &str, stem: &str) -> PyResult<(Exported, Vec<String>)> {
+        let found = Format::ALL.into_iter().find(|known| known.name() == format);
+        let known = Format::ALL.map(Format::name).join(", ");
+        let format = found.ok_or_else(|| errors::argument(py, "format", format, &known))?;
+        let made = py.detach(|| {
+            let scene = Scene::new(&self.0)?;
+            Ok((scene.export(format, stem)?, scene.notes()))
+        });
+        let (files, notes) = made.map_err(|error: ExportError| errors::plan_file(py, &error))?;
+        let file = |file: regrasp::export::File| (file.name, PyBytes::new(py, &file.bytes).unbind());
+        Ok((files.into_iter().map(file).collect(), notes))
     }
 
     /// The verifier's verdict, as JSON.

@@ -30,7 +30,8 @@ impl Scenario {
         loaded.map(|loaded| Self(Arc::new(loaded))).map_err(|error| errors::scenario(py, &error))
     }
 
-    /// A scenario from TOML or JSON text; `file` is what messages call it, `folder` where its files are looked for.
+    /// A scenario from TOML or JSON text; `file` is what messages call it, `folder` where its files are
+    /// looked for.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, file: &str, folder: PathBuf) -> PyResult<Self> {
         let registry = registry().map_err(|error| errors::run(py, &error, &Stash::default()))?;

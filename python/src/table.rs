@@ -1,6 +1,8 @@
 //! A plan's states as columns of numbers.
 
+use regrasp::api::{FingerIndex, FingerJoints, Hand, Rotation, Vec3};
 use regrasp::plan::{Plan, SegmentRecord, StateRecord};
+use regrasp::world::ChainHand;
 
 /// The distinct states of a plan in turn: the state that two segments share stands once.
 pub fn states(plan: &Plan) -> impl Iterator<Item = &StateRecord> {
@@ -25,6 +27,7 @@ pub fn spans(plan: &Plan) -> Vec<(usize, usize)> {
 }
 
 /// Columns of a plan: every vector has `states` rows.
+#[derive(Default)]
 pub struct Table {
     /// How many states.
     pub states: usize,
@@ -38,8 +41,15 @@ pub struct Table {
     pub pose: Vec<f64>,
     /// Joint positions, finger after finger.
     pub q: Vec<f64>,
-    /// For each finger point in O, outward normal in O, point in F: nine a finger; NaN where it does not hold.
+    /// For each finger point in O, outward normal in O, point in F: nine a finger; NaN where it does not
+    /// hold.
     pub contact: Vec<f64>,
+    /// Joint velocities as `q`; empty in plans without.
+    pub velocity: Vec<f64>,
+    /// For each finger the force on the object in O (N); NaN where free; empty in plans without.
+    pub force: Vec<f64>,
+    /// What the joints must give for these forces alone (N·m; N), as `q`; empty in plans without.
+    pub effort: Vec<f64>,
 }
 
 /// The columns of a plan; `Err` where a state has other fingers or joints than the first.
@@ -47,16 +57,52 @@ pub fn table(plan: &Plan) -> Result<Table, String> {
     let first = states(plan).next();
     let fingers = first.map_or(0, |state| state.joints.len());
     let joints = first.map_or(0, |state| state.joints.iter().map(Vec::len).sum());
-    let mut table =
-        Table { states: 0, fingers, joints, time: vec![], pose: vec![], q: vec![], contact: vec![] };
+    let mut table = Table { fingers, joints, ..Table::default() };
     for (row, state) in states(plan).enumerate() {
         table.push(state);
-        let fits = table.q.len() == joints * table.states && state.contacts.len() == fingers;
+        let whole = |column: &[f64], width| column.is_empty() || column.len() == width * table.states;
+        let fits = table.q.len() == joints * table.states
+            && state.contacts.len() == fingers
+            && whole(&table.velocity, joints)
+            && whole(&table.force, 3 * fingers);
         if !fits {
             return Err(format!("state {row} has other fingers or joints than the first"));
         }
     }
+    if !table.force.is_empty() {
+        table.effort = efforts(plan)?;
+    }
     Ok(table)
+}
+
+/// Jᵀf of every state: what the joints must give to exert the forces, weights of links apart.
+fn efforts(plan: &Plan) -> Result<Vec<f64>, String> {
+    let hand = ChainHand::new(plan.scenario.problem.hand.clone()).map_err(|error| error.to_string())?;
+    let mut efforts = Vec::new();
+    for state in states(plan) {
+        for (index, joints) in state.joints.iter().enumerate() {
+            let fits = index < hand.finger_count()
+                && joints.len() == hand.finger(FingerIndex(index as u8)).joints.len();
+            if !fits {
+                return Err(format!("finger {index} of a state does not fit the plan's hand"));
+            }
+            efforts.extend(finger_efforts(&hand, state, index));
+        }
+    }
+    Ok(efforts)
+}
+
+fn finger_efforts(hand: &ChainHand, state: &StateRecord, index: usize) -> Vec<f64> {
+    let joints = FingerJoints::from_slice(&state.joints[index]);
+    let force = state.forces.as_ref().and_then(|forces| forces.get(index).copied().flatten());
+    let contact = state.contacts.get(index).and_then(Option::as_ref);
+    let (Some(f_O), Some(contact)) = (force, contact) else { return vec![0.0; joints.len()] };
+    let [w, x, y, z] = state.object.orientation;
+    let f_H = Rotation::from_quaternion(nalgebra::Quaternion::new(w, x, y, z)) * Vec3::from(f_O);
+    let tip = hand.tip_kinematics(FingerIndex(index as u8), &joints);
+    let moment_H = (tip.R_HF * Vec3::from(contact.point_F)).cross(&f_H);
+    let effort = |joint| tip.J_v.column(joint).dot(&f_H) + tip.J_w.column(joint).dot(&moment_H);
+    (0..joints.len()).map(effort).collect()
 }
 
 impl Table {
@@ -65,6 +111,10 @@ impl Table {
         self.time.push(state.time);
         self.pose.extend(state.object.position.iter().chain(&state.object.orientation));
         self.q.extend(state.joints.iter().flatten());
+        self.velocity.extend(state.velocities.iter().flatten().flatten());
+        let no_force = [f64::NAN; 3];
+        let forces = state.forces.iter().flatten().map(|force| force.unwrap_or(no_force));
+        self.force.extend(forces.flatten());
         for contact in &state.contacts {
             match contact {
                 Some(contact) => {

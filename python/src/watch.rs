@@ -24,6 +24,8 @@ pub enum Stage {
     Search(usize, usize, usize),
     /// Smoothing a motion of so many segments.
     Smoothing(usize),
+    /// Of so many runs of a study so many have ended.
+    Study(usize, usize),
 }
 
 /// The clock of one run, with what stops it.
@@ -53,6 +55,11 @@ impl Watch {
     /// How far the run is, where that changed since it was last asked.
     fn news(&self) -> Option<Stage> {
         self.stage.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// Of `total` runs of a study `done` have ended.
+    pub fn study(&self, done: usize, total: usize) {
+        self.tell(Stage::Study(done, total));
     }
 
     fn tell(&self, stage: Stage) {
@@ -92,7 +99,8 @@ impl Progress for Watch {
 
 /// Runs `job` on a thread of its own, without the GIL, and tells `callback` how far it is.
 ///
-/// Signals are looked for all the while: Ctrl-C raises within a tenth of a second, and so does an exception of the callback. A job that does not
+/// Signals are looked for all the while: Ctrl-C raises within a tenth of a second, and so does an exception
+/// of the callback. A job that does not
 /// stop in time goes on alone, and its answer is thrown away.
 pub fn beside<T: Send + 'static>(
     py: Python<'_>,
@@ -141,6 +149,7 @@ fn tell(watch: &Watch, callback: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
     let arguments = match stage {
         Stage::Search(goal, nodes, components) => ("search", goal, nodes, components),
         Stage::Smoothing(segments) => ("smoothing", 0, segments, 0),
+        Stage::Study(done, total) => ("study", 0, done, total),
     };
     callback.call1(arguments).map(drop)
 }

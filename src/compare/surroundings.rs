@@ -1,5 +1,4 @@
-//! What a study records of its surroundings: the program, the machine, the time. The library looks at none of
-//! them.
+//! What a study records of its surroundings: the program, the machine, the time. The library looks at none of them.
 
 use crate::Failure;
 use regrasp::study::compare::{Machine, fingerprint};

@@ -1,6 +1,5 @@
 //! The real binary from outside.
 
-mod again;
 mod bad_input;
 mod command_line;
 mod compare;

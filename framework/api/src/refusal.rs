@@ -1,5 +1,4 @@
-//! What an error says, as data: for programs that read it, and for those who look for the line of a file that
-//! it belongs to.
+//! What an error says, as data: for programs that read it, and for those who look for the line of a file that it belongs to.
 
 use crate::{BuildError, CallError, Departure, Fault, SettingsError, did_you_mean};
 use serde::Serialize;

@@ -6,7 +6,6 @@
 
 mod csv;
 mod error;
-mod files;
 mod forces;
 mod gltf;
 mod grasps;

@@ -14,7 +14,6 @@
 //! is either given in the options, or chosen and said in the report; limits are never invented.
 
 mod contacts;
-mod find;
 mod fingers;
 mod guess;
 mod joints;

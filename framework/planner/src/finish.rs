@@ -27,11 +27,7 @@ impl Run<'_> {
         self.draft.align_quaternions();
         let mut motion = Motion { segments: std::mem::take(&mut self.draft.segments) };
         self.timed(Phase::Timing, |run| {
-            assign_times(
-                &mut motion,
-                run.request.hand,
-                &TimingLimits::within(&run.request.problem.limits.tolerances),
-            )
+            assign_times(&mut motion, run.request.hand, &TimingLimits::default())
         })?;
         self.statistics.regrasps = regrasps(&motion.segments);
         self.statistics.transfers = motion.segments.len() - self.statistics.regrasps;

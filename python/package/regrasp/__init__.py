@@ -5,9 +5,12 @@
 >>> plan.joints.shape == (len(plan.times), 12)
 True
 
-Everything is in SI units; quaternions are w, x, y, z; ``X_HO`` is the pose of the object O in the hand's frame H.
+Everything is in SI units; quaternions are w, x, y, z; ``X_HO`` is the pose of the object O in the hand's
+frame H.
 """
 
+from . import conformance
+from ._compare import Study, compare
 from ._errors import (
     ArgumentError,
     NoPlan,
@@ -15,45 +18,104 @@ from ._errors import (
     PluginError,
     RegraspError,
     ScenarioError,
+    StudyError,
     VerificationError,
 )
-from ._hand import Hand
+from ._hand import Finger, Hand
+from ._pieces import (
+    Bench,
+    SurfacePoints,
+    closure_margin,
+    force_closure,
+    internal_forces,
+    sample_grasps,
+    wrench_cones,
+)
 from ._plan import Check, Contacts, Plan, Segment, Verdict
 from ._planning import Progress, plan
-from ._scenario import Scenario, scenario_text, scenarios
+from ._plugins import PluginInfo, plugins
+from ._regrasp import Configuration, Contact, Context, Graph, Grasp, PoseRequest, Target, Task
+from ._roles import (
+    Action,
+    ContactModel,
+    GraphStrategy,
+    LocalPlanner,
+    Parts,
+    Plugin,
+    Sampler,
+    StabilityTest,
+    Surface,
+    register,
+    setting,
+)
+from ._scenario import Hold, Scenario, scenario_text, scenarios
 from ._shapes import Capsule, Cuboid, Cylinder, Ellipsoid, Mesh, Obstacle, Shape, Sphere, Torus
 from ._spatial import pose
 
 load = Plan.load
 
 __all__ = [
+    "Action",
     "ArgumentError",
+    "Bench",
     "Capsule",
     "Check",
+    "Configuration",
+    "Contact",
+    "ContactModel",
     "Contacts",
+    "Context",
     "Cuboid",
     "Cylinder",
     "Ellipsoid",
+    "Finger",
+    "Graph",
+    "GraphStrategy",
+    "Grasp",
     "Hand",
+    "Hold",
+    "LocalPlanner",
     "Mesh",
     "NoPlan",
     "Obstacle",
+    "Parts",
     "Plan",
     "PlanFileError",
+    "Plugin",
     "PluginError",
+    "PluginInfo",
+    "PoseRequest",
     "Progress",
     "RegraspError",
+    "Sampler",
     "Scenario",
     "ScenarioError",
     "Segment",
     "Shape",
     "Sphere",
+    "StabilityTest",
+    "Surface",
+    "StudyError",
+    "Study",
+    "SurfacePoints",
+    "Target",
+    "Task",
     "Torus",
     "Verdict",
     "VerificationError",
+    "closure_margin",
+    "compare",
+    "conformance",
+    "force_closure",
+    "internal_forces",
     "load",
     "plan",
+    "plugins",
     "pose",
+    "register",
+    "sample_grasps",
     "scenario_text",
     "scenarios",
+    "setting",
+    "wrench_cones",
 ]

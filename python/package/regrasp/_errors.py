@@ -120,6 +120,10 @@ class PlanFileError(RegraspError, ValueError):
     """A plan cannot be read, written or shown."""
 
 
+class StudyError(RegraspError, ValueError):
+    """A study cannot be made, resumed or merged."""
+
+
 class ArgumentError(RegraspError, ValueError):
     """An argument is outside its range, or an array has another shape.
 
@@ -136,7 +140,16 @@ class ArgumentError(RegraspError, ValueError):
 
 CLASSES: dict[str, type[RegraspError]] = {
     kind.__name__: kind
-    for kind in (RegraspError, ScenarioError, NoPlan, VerificationError, PluginError, PlanFileError, ArgumentError)
+    for kind in (
+        RegraspError,
+        ScenarioError,
+        NoPlan,
+        VerificationError,
+        PluginError,
+        PlanFileError,
+        StudyError,
+        ArgumentError,
+    )
 }
 
 
@@ -147,10 +160,4 @@ def _remake(kind: type[RegraspError], message: str, fields: dict[str, Any]) -> R
 def make(kind: str, message: str, fields: str) -> RegraspError:
     """The exception of the class ``kind``, its fields from JSON text: called by the native module."""
     known = {name: value for name, value in json.loads(fields).items() if value not in (None, "", [])}
-    remedy = known.get("remedy")
-    if isinstance(remedy, list):
-        known["remedy"] = ", ".join(remedy)
-    elif remedy is None and "; " in message:
-        # By the house's form of messages the fix follows what is wrong.
-        known["remedy"] = message.split("\n")[0].split("; ", 1)[1]
     return CLASSES[kind](message, **known)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,11 +22,14 @@ if TYPE_CHECKING:
     import pandas
 
 Array = npt.NDArray[np.float64]
+logger = logging.getLogger("regrasp")
 
 
 @dataclass(frozen=True)
 class Check:
-    """One check of the verifier: its worst value over the plan, the limit of that, both in ``unit``, and where."""
+    """One check of the verifier: its worst value over the plan, the limit of that, both in ``unit``, and
+    where.
+    """
 
     name: str
     ok: bool
@@ -53,12 +58,14 @@ class Verdict:
     def of(cls, tree: dict[str, Any]) -> Verdict:
         """The verdict from the verifier's own tree."""
         names = ("name", "ok", "worst", "limit", "unit", "place")
-        return cls(tree["valid"], [Check(**{name: check.get(name) for name in names}) for check in tree["checks"]])
+        return cls(
+            tree["valid"], [Check(**{name: check.get(name) for name in names}) for check in tree["checks"]]
+        )
 
 
 @dataclass(frozen=True)
 class Segment:
-    """A part of the motion: the object moves and the fingertips roll, or the object rests and one finger moves.
+    """A part of the motion: the object moves and the tips roll, or it rests and one finger moves.
 
     Attributes
     ----------
@@ -106,7 +113,8 @@ class Contacts:
 class Plan:
     """A plan: a motion that the verifier can judge.
 
-    All arrays are read-only, in SI units; S is the number of distinct states, J that of all joints, F that of fingers.
+    All arrays are read-only, in SI units; S is the number of distinct states, J that of all joints, F that
+    of fingers.
     Between two states joints and position move linearly and orientation by slerp.
     """
 
@@ -169,7 +177,9 @@ class Plan:
 
     @property
     def joints(self) -> Array:
-        """Joint positions (rad; m where prismatic), finger after finger, base to tip: (S, J), as :attr:`joint_names`."""
+        """Joint positions (rad; m where prismatic), finger after finger, base to tip: (S, J), as
+        :attr:`joint_names`.
+        """
         return self._arrays["joints"]
 
     @property
@@ -196,6 +206,21 @@ class Plan:
         holding = ~np.isnan(contact[:, :, 0, 0])
         return Contacts(contact[:, :, 0], contact[:, :, 1], contact[:, :, 2], holding)
 
+    @property
+    def velocities(self) -> Array | None:
+        """Joint velocities (rad/s; m/s), (S, J), for cubics through the joints; None in plans without."""
+        return self._arrays.get("velocity")
+
+    @property
+    def forces(self) -> Array | None:
+        """Forces of the fingertips on the object, in O (N), (S, F, 3): NaN where free; None without."""
+        return self._arrays.get("force")
+
+    @property
+    def efforts(self) -> Array | None:
+        """What the joints must give for :attr:`forces`, Jᵀf, weights of links apart (N·m; N), (S, J)."""
+        return self._arrays.get("effort")
+
     @cached_property
     def segments(self) -> list[Segment]:
         """Transfers and regrasps, in turn."""
@@ -208,7 +233,9 @@ class Plan:
 
     @property
     def certificate(self) -> dict[str, Any] | None:
-        """What the verifier certifies: margin, clearance, slip, closure, each with its place; None before it has."""
+        """What the verifier certifies: margin, clearance, slip, closure, each with its place; None before
+        it has.
+        """
         certificate: dict[str, Any] | None = self._head["certificate"]
         return certificate
 
@@ -271,12 +298,38 @@ class Plan:
         segment = np.zeros(len(self.times), dtype=int)
         for number, part in enumerate(self.segments):
             segment[part.first + 1 : part.last + 1] = number
-        columns: dict[str, Any] = {"segment": segment, "kind": [self.segments[number].kind for number in segment]}
+        columns: dict[str, Any] = {
+            "segment": segment,
+            "kind": [self.segments[number].kind for number in segment],
+        }
         columns |= dict(zip(("x", "y", "z"), self.positions.T, strict=True))
         columns |= dict(zip(("qw", "qx", "qy", "qz"), self.orientations.T, strict=True))
         columns |= dict(zip(self.joint_names, self.joints.T, strict=True))
-        columns |= dict(zip((f"{name}/holds" for name in self.finger_names), self.contacts.holding.T, strict=True))
+        columns |= dict(
+            zip((f"{name}/holds" for name in self.finger_names), self.contacts.holding.T, strict=True)
+        )
         return pandas.DataFrame(columns, index=pandas.Index(self.times, name="time"))
+
+    def export(self, format: str, folder: str | os.PathLike[str], *, name: str = "plan") -> list[Path]:
+        """Writes the plan for other programs, and says where.
+
+        Parameters
+        ----------
+        format : str
+            ``urdf``, ``mjcf``, ``gltf``, ``csv`` or ``npz``.
+        folder : path
+            It is made where there is none; files of the same name give way.
+        name : str
+            How the files' names begin.
+        """
+        files, notes = self._native.export(format, name)
+        for note in notes:
+            logger.info("%s", note)
+        place = Path(folder)
+        place.mkdir(parents=True, exist_ok=True)
+        for file, content in files:
+            (place / file).write_bytes(content)
+        return [place / file for file, _ in files]
 
     def page(self) -> str:
         """The page that plays the plan in a browser, as HTML that needs no network."""
@@ -285,7 +338,9 @@ class Plan:
     def _repr_html_(self) -> str:
         # A frame of its own: the page's style and scripts must not meet the notebook's.
         page = self.page().replace("&", "&amp;").replace('"', "&quot;")
-        return f'<iframe srcdoc="{page}" style="width:100%;height:620px;border:0" allow="fullscreen"></iframe>'
+        return (
+            f'<iframe srcdoc="{page}" style="width:100%;height:620px;border:0" allow="fullscreen"></iframe>'
+        )
 
     def __len__(self) -> int:
         return len(self.segments)
@@ -296,8 +351,8 @@ class Plan:
     def __repr__(self) -> str:
         kinds = [segment.kind for segment in self.segments]
         return (
-            f"<Plan {self.scenario['name']!r}: {kinds.count('transfer')} transfers, {kinds.count('regrasp')} regrasps, "
-            f"{len(self.times)} states, {self.duration:.1f} s>"
+            f"<Plan {self.scenario['name']!r}: {kinds.count('transfer')} transfers, "
+            f"{kinds.count('regrasp')} regrasps, {len(self.times)} states, {self.duration:.1f} s>"
         )
 
     def __eq__(self, other: object) -> bool:

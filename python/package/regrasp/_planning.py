@@ -13,6 +13,7 @@ from typing import Any, Literal
 from . import _regrasp
 from ._errors import NoPlan
 from ._plan import Plan, Verdict, refused
+from ._roles import chosen
 from ._scenario import Scenario
 
 logger = logging.getLogger("regrasp")
@@ -32,13 +33,16 @@ class Progress:
         Of the manipulation graph, while searching.
     segments : int
         Of the motion, while smoothing.
+    runs : pair of int
+        Of a study: how many have ended, and how many there are.
     """
 
-    stage: Literal["search", "smoothing"]
+    stage: Literal["search", "smoothing", "study"]
     goal: int = 0
     nodes: int = 0
     components: int = 0
     segments: int = 0
+    runs: tuple[int, int] = (0, 0)
 
 
 Callback = Callable[[Progress], object]
@@ -57,7 +61,8 @@ def plan(
 ) -> Plan:
     """Plans, and verifies the plan.
 
-    The GIL is released all the while. The same scenario, settings and seed give the same plan on any number of threads.
+    The GIL is released all the while. The same scenario, settings and seed give the same plan on any number
+    of threads.
 
     Parameters
     ----------
@@ -72,11 +77,14 @@ def plan(
     max_nodes : int, optional
         The most nodes to generate for each goal; by default as many as the scenario says.
     use : dict, optional
-        Slots and what fills them: a plugin's id, such as ``{"stability-test": "socp"}``.
+        Slots and what fills them: a plugin's id, such as ``{"stability-test": "socp"}``, a class derived
+        from a role, or an
+        instance of one with its settings.
     settings : dict, optional
-        Settings of the plugins, such as ``{"sampler.poses": 200}``; for a class of a plugin, its own fields.
+        Settings of the plugins, such as ``{"sampler.poses": 200}``.
     progress : bool or callable, optional
-        True shows a bar (by ``tqdm`` where it is installed). A callable is handed a :class:`Progress`, on this thread.
+        True shows a bar (by ``tqdm`` where it is installed). A callable is handed a :class:`Progress`, on
+        this thread.
 
     Returns
     -------
@@ -87,11 +95,13 @@ def plan(
     ScenarioError
         The scenario cannot be used; the exception says which key, and why.
     NoPlan
-        No plan was found within the budget; the exception has rejections, advice, and the part that was reached.
+        No plan was found within the budget; the exception has rejections, advice, and the part that was
+        reached.
     VerificationError
         The plan does not verify.
     PluginError
-        A plugin is unknown, refused or failed. An exception of a plugin written in Python comes through as it is.
+        A plugin is unknown, refused or failed. An exception of a plugin written in Python comes through as
+        it is.
     KeyboardInterrupt
         Ctrl-C, within a tenth of a second.
     """
@@ -99,12 +109,13 @@ def plan(
     for remark in checked.remarks:
         logger.info("%s", remark)
     changes = native_changes(use, settings, time_limit, max_nodes)
-    with _Teller(progress) as tell:
-        solved = _regrasp.solve(checked.native, _whole("seed", seed), _whole("threads", threads), changes, tell)
+    with Teller(progress) as tell:
+        solved = _regrasp.solve(checked.native, whole("seed", seed), whole("threads", threads), changes, tell)
     return _answer(solved)
 
 
-def _whole(key: str, value: Any) -> int:
+def whole(key: str, value: Any) -> int:
+    """A whole number, of numpy or of Python's own."""
     try:
         return int(value.__index__())
     except AttributeError:
@@ -118,16 +129,22 @@ def native_changes(
     max_nodes: int | None,
 ) -> dict[str, Any]:
     """What a caller changes in a scenario, as the native module takes it."""
-    split = [(*_slot_and_key(key), json.dumps(value)) for key, value in (settings or {}).items()]
+    chosen_ids = {slot: chosen(slot, plugin) for slot, plugin in (use or {}).items()}
+    own = [
+        (slot, key, json.dumps(value))
+        for slot, (_, values) in chosen_ids.items()
+        for key, value in values.items()
+    ]
+    split = [(*slot_and_key(key), json.dumps(value)) for key, value in (settings or {}).items()]
     return {
-        "uses": [(slot, str(plugin)) for slot, plugin in (use or {}).items()],
-        "settings": split,
+        "uses": [(slot, plugin) for slot, (plugin, _) in chosen_ids.items()],
+        "settings": own + split,
         "time_limit": time_limit,
         "max_nodes": max_nodes,
     }
 
 
-def _slot_and_key(path: str) -> tuple[str, str]:
+def slot_and_key(path: str) -> tuple[str, str]:
     """Slot and key of ``local-planner.transfer.max_slip``."""
     parts = path.split(".")
     size = 2 if parts[0] == "local-planner" else 1
@@ -164,7 +181,7 @@ def _no_plan(summary: dict[str, Any], partial: Plan | None) -> NoPlan:
     )
 
 
-class _Teller:
+class Teller:
     """Tells a callback, or a bar, how far a run is; shows itself as the native module's callback, or None."""
 
     def __init__(self, progress: bool | Callback) -> None:
@@ -174,13 +191,17 @@ class _Teller:
     def __enter__(self) -> Callable[[str, int, int, int], None] | None:
         return self._tell if self._callback or self._bar is not None else None
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         if self._bar is not None:
             self._bar.close()
 
     def _tell(self, stage: str, goal: int, count: int, components: int) -> None:
         if stage == "search":
             news = Progress("search", goal=goal, nodes=count, components=components)
+        elif stage == "study":
+            news = Progress("study", runs=(count, components))
         else:
             news = Progress("smoothing", segments=count)
         if self._callback:

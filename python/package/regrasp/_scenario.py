@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -22,8 +23,36 @@ if TYPE_CHECKING:
     from ._plan import Plan
 
 
+@dataclass(frozen=True)
+class Hold:
+    """What the grasps must bear besides being closed: the object's weight, within the joints' efforts.
+
+    Attributes
+    ----------
+    weight : bool
+        Whether the weight must be held.
+    friction_factor : float or "most"
+        Plan as if friction were this share (0.05 to 1) of what is given; ``"most"``: as little as a plan can
+        be made with.
+    disturbance : pair of float
+        Largest force (N) and torque (N·m) at the centre of mass, in any direction, to be held beside the
+        weight.
+    max_normal_force : float, optional
+        Largest normal force of one contact (N); the efforts alone bound it where absent.
+    """
+
+    weight: bool = True
+    friction_factor: float | Literal["most"] = 0.8
+    disturbance: tuple[float, float] = (0.0, 0.0)
+    max_normal_force: float | None = None
+
+    def tree(self) -> dict[str, Any]:
+        """A scenario's ``hold``."""
+        return {key: value for key, value in asdict(self).items() if value is not None}
+
+
 class Scenario:
-    """A planning problem: hand, object, start, goals, and the plugins to solve it with. Checked when it is made.
+    """A planning problem: hand, object, start, goals, and plugins. Checked when it is made.
 
     Parameters
     ----------
@@ -32,13 +61,16 @@ class Scenario:
     object : Shape or trimesh.Trimesh or dict
         What the hand holds; a shape carries mass (kg) and friction (no unit).
     start : array_like (4, 4) or dict
-        The pose X_HO of the object in the hand's frame at the start (see :func:`regrasp.pose`), or the tree of ``start``.
+        The pose X_HO of the object in the hand's frame at the start (see :func:`regrasp.pose`), or the tree
+        of ``start``.
     goals : sequence of array_like (4, 4) or dict
         Where the object goes, in turn: poses X_HO, or trees of ``goal``.
     obstacles : sequence of Obstacle or dict
         What is fixed to the hand's frame.
     gravity : three floats, optional
         Acceleration in the hand's frame (m/s²); (0, 0, -9.81) by default.
+    hold : Hold or dict, optional
+        What the grasps must bear; without it they are closed, however large the forces.
     name : str
         What messages and plans call it.
     use, limits, extra : dict, optional
@@ -47,8 +79,13 @@ class Scenario:
     Raises
     ------
     ScenarioError
-        With the path of the key, the value, the range that is allowed and, where there is one, the likely fix.
+        With the path of the key, the value, the range that is allowed and, where there is one, the likely
+        fix.
     """
+
+    # What it was read from: its text, what messages call it, and the folder of the files that it names.
+    origin: tuple[str, str, str]
+    native: _regrasp.Scenario
 
     def __init__(
         self,
@@ -59,6 +96,7 @@ class Scenario:
         goals: Sequence[npt.ArrayLike | Mapping[str, Any]],
         obstacles: Sequence[Obstacle | Mapping[str, Any]] = (),
         gravity: Sequence[float] | None = None,
+        hold: Hold | Mapping[str, Any] | None = None,
         name: str = "scenario",
         use: Mapping[str, str | Mapping[str, Any]] | None = None,
         limits: Mapping[str, Any] | None = None,
@@ -72,40 +110,53 @@ class Scenario:
             "goal": [_end_tree(f"goal[{i}]", goal) for i, goal in enumerate(goals)],
         }
         if obstacles:
-            tree["obstacle"] = [item.tree() if isinstance(item, Obstacle) else dict(item) for item in obstacles]
+            tree["obstacle"] = [
+                item.tree() if isinstance(item, Obstacle) else dict(item) for item in obstacles
+            ]
         if gravity is not None:
             tree["gravity"] = list(gravity)
+        if hold is not None:
+            tree["hold"] = hold.tree() if isinstance(hold, Hold) else dict(hold)
         if use:
             tree["plugins"] = _plugin_tables(use)
         if limits:
             tree["limits"] = dict(limits)
-        self._set(_parse(tree | dict(extra or {}), name, Path()))
+        self._read(_json(tree | dict(extra or {}), name), name, Path())
 
-    def _set(self, native: _regrasp.Scenario) -> None:
-        self.native = native
+    def _read(self, text: str, name: str, folder: Path) -> None:
+        self.origin = (text, name, os.fspath(folder.absolute()))
+        self.native = _regrasp.Scenario.parse(*self.origin)
 
     @classmethod
-    def _wrap(cls, native: _regrasp.Scenario) -> Scenario:
+    def _of_text(cls, text: str, name: str, folder: Path) -> Scenario:
         scenario = cls.__new__(cls)
-        scenario._set(native)
+        scenario._read(text, name, folder)
         return scenario
 
     @classmethod
     def load(cls, name: str | os.PathLike[str]) -> Scenario:
         """The built-in scenario of this name, or else the TOML or JSON file."""
-        return cls._wrap(_regrasp.Scenario.load(os.fspath(name)))
+        place = os.fspath(name)
+        scenario = cls.__new__(cls)
+        scenario.native = _regrasp.Scenario.load(place)
+        built_in = dict(_regrasp.scenarios()).get(place)
+        text = Path(place).read_text() if built_in is None else built_in
+        scenario.origin = (text, place, os.fspath(Path(place).absolute().parent))
+        return scenario
 
     @classmethod
     def from_dict(
         cls, tree: Mapping[str, Any], *, name: str = "scenario", folder: str | os.PathLike[str] = "."
     ) -> Scenario:
         """A scenario from its tree; files that it names are looked for in `folder`."""
-        return cls._wrap(_parse(tree, name, Path(folder)))
+        return cls._of_text(_json(tree, name), name, Path(folder))
 
     @classmethod
-    def from_text(cls, text: str, *, name: str = "scenario", folder: str | os.PathLike[str] = ".") -> Scenario:
+    def from_text(
+        cls, text: str, *, name: str = "scenario", folder: str | os.PathLike[str] = "."
+    ) -> Scenario:
         """A scenario from TOML or JSON text."""
-        return cls._wrap(_regrasp.Scenario.parse(text, name, os.fspath(folder)))
+        return cls._of_text(text, name, Path(folder))
 
     @classmethod
     def of(cls, scenario: Scenario | Mapping[str, Any] | str | os.PathLike[str]) -> Scenario:
@@ -161,6 +212,9 @@ class Scenario:
 
         return plan(self, **options)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_unpickle, self.origin)
+
     def __repr__(self) -> str:
         return f"<Scenario {self.name!r}: {self.summary or self.problem['object']['shape']['kind']}>"
 
@@ -175,12 +229,12 @@ def scenario_text(name: str) -> str:
     return dict(_regrasp.scenarios())[name]
 
 
-def _parse(tree: Mapping[str, Any], name: str, folder: Path) -> _regrasp.Scenario:
+def _json(tree: Mapping[str, Any], name: str) -> str:
     try:
-        text = json.dumps(tree, default=_plain, allow_nan=False, indent=1)
+        return json.dumps(tree, default=_plain, allow_nan=False, indent=1)
     except ValueError as error:
-        raise ArgumentError(f"{_not_finite(tree) or name}: {error}", key=_not_finite(tree)) from error
-    return _regrasp.Scenario.parse(text, name, os.fspath(folder))
+        place = _not_finite(tree)
+        raise ArgumentError(f"`{place or name}`: {error}", key=place) from error
 
 
 def _plain(value: object) -> object:
@@ -222,3 +276,7 @@ def _plugin_tables(use: Mapping[str, str | Mapping[str, Any]]) -> dict[str, Any]
         else:
             tables[role] = table
     return tables
+
+
+def _unpickle(text: str, name: str, folder: str) -> Scenario:
+    return Scenario.from_text(text, name=name, folder=folder)

@@ -16,7 +16,9 @@ from ._spatial import array, pose_tree
 
 @dataclass(frozen=True)
 class Shape:
-    """An object's shape, with its mass (kg) and the coefficient of friction between it and the fingertips (no unit)."""
+    """An object's shape, with its mass (kg) and the coefficient of friction between it and the fingertips
+    (no unit).
+    """
 
     kind: str
     lengths: Mapping[str, Any]
@@ -64,9 +66,7 @@ def Torus(ring_radius: float, tube_radius: float, **rest: Any) -> Shape:
     return Shape("torus", {"ring_radius": float(ring_radius), "tube_radius": float(tube_radius)}, **rest)
 
 
-def Mesh(
-    source: str | os.PathLike[str] | npt.ArrayLike | Any, facets: npt.ArrayLike | None = None, **rest: Any
-) -> Shape:
+def Mesh(source: Any, facets: npt.ArrayLike | None = None, **rest: Any) -> Shape:
     """A closed mesh.
 
     Parameters
@@ -84,12 +84,16 @@ def Mesh(
         return Shape("mesh", {"file": os.path.abspath(source), **scaled}, **rest)
     if facets is None:
         if not (hasattr(source, "vertices") and hasattr(source, "faces")):
-            raise ArgumentError("`facets` are missing: a mesh of arrays has vertices and facets", key="facets")
+            raise ArgumentError(
+                "`facets` are missing: a mesh of arrays has vertices and facets", key="facets"
+            )
         source, facets = source.vertices, source.faces
     vertices = array("vertices", source, (None, 3))
     indices = np.asarray(facets)
     if indices.dtype.kind not in "iu" or indices.ndim != 2 or indices.shape[1] != 3:
-        message = f"`facets` are {indices.dtype} of shape {indices.shape}, not whole numbers of shape (any, 3)"
+        message = (
+            f"`facets` are {indices.dtype} of shape {indices.shape}, not whole numbers of shape (any, 3)"
+        )
         raise ArgumentError(message, key="facets", range="(any, 3)")
     if indices.size and not (0 <= indices.min() and indices.max() < len(vertices)):
         highest = len(vertices) - 1

@@ -15,9 +15,11 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def array(key: str, value: npt.ArrayLike, shape: tuple[int | None, ...]) -> Array:
-    """``value`` as finite float64 numbers of this shape; None stands for any length. Strided arrays are copied."""
+    """``value`` as finite float64 numbers of this shape; None stands for any length. Strided arrays are
+    copied.
+    """
     try:
-        numbers = np.ascontiguousarray(value, dtype=np.float64)
+        numbers = np.asarray(value, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
         raise ArgumentError(f"`{key}` holds something that is no number: {error}", key=key) from error
     fits = numbers.ndim == len(shape) and all(
@@ -99,7 +101,9 @@ def pose(
         q = array("quaternion", quaternion, (4,))
     elif axis is not None and angle_deg is not None:
         if isinstance(axis, str) and axis not in AXES:
-            raise ArgumentError(f"`axis` = {axis!r} is outside 'x', 'y', 'z' and vectors", key="axis", value=axis)
+            raise ArgumentError(
+                f"`axis` = {axis!r} is outside 'x', 'y', 'z' and vectors", key="axis", value=axis
+            )
         direction = array("axis", AXES[axis] if isinstance(axis, str) else axis, (3,))
         half = float(np.radians(array("angle_deg", angle_deg, ()))) / 2
         length = float(np.linalg.norm(direction))
@@ -109,7 +113,8 @@ def pose(
     length = float(np.linalg.norm(q))
     if length < 1e-9:
         raise ArgumentError("`quaternion` has the length 0", key="quaternion")
-    return matrices(position[None], (q / length)[None])[0]
+    matrix: Array = matrices(position[None], (q / length)[None])[0]
+    return matrix
 
 
 def pose_tree(key: str, X: npt.ArrayLike | dict[str, Any]) -> dict[str, Any]:

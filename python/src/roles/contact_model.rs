@@ -27,7 +27,7 @@ fn cone(answer: Answer) -> PyResult<Cone<'static>> {
             Ok(Cone::Polyhedral(edges.into_iter().map(edge).collect::<Vec<_>>().into()))
         }
         _ => Err(PyValueError::new_err(
-            "a cone is friction and torsional radius (m), finite and not negative, or edges of three finite numbers",
+            "a cone is friction and torsional radius (m), finite and not negative, or edges of three numbers",
         )),
     }
 }

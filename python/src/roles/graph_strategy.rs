@@ -90,7 +90,8 @@ impl Graph {
         Ok(super::data::Configuration(self.0.value()?.configuration(self.node(node)?).clone()))
     }
 
-    /// What was done so far: the name of the action, what it came to, the nodes that it made, and by how many components fewer it left.
+    /// What was done so far: the name of the action, what it came to, the nodes that it made, and by how
+    /// many components fewer it left.
     #[getter]
     fn history(&self) -> PyResult<Vec<(&'static str, &'static str, Vec<u32>, usize)>> {
         let row = |past: &api::PastAction| {

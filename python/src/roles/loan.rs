@@ -8,14 +8,15 @@ use std::cell::Cell;
 
 /// A borrowed value that is taken back when the call that lent it returns.
 ///
-/// It is neither `Send` nor `Sync`: classes that hold one are `unsendable`, so that all uses and the taking back happen on one thread,
+/// It is neither `Send` nor `Sync`: classes that hold one are `unsendable`, so that all uses and the taking
+/// back happen on one thread,
 /// in the order of its stack.
 pub struct Loan<T: Copy>(Cell<Option<T>>);
 
 impl<T: Copy> Loan<T> {
     /// The value, while its call lasts.
     pub fn value(&self) -> PyResult<T> {
-        let over = "it was lent for one call of a plugin, which is over; keep what you need of it, not the thing itself";
+        let over = "it was lent for one call of a plugin, which is over; keep what you need of it instead";
         self.0.get().ok_or_else(|| PyRuntimeError::new_err(over))
     }
 
@@ -39,8 +40,10 @@ pub fn lend_task<R>(
     task: &api::Task<'_>,
     call: impl FnOnce(&Bound<'_, super::task::Task>) -> PyResult<R>,
 ) -> PyResult<R> {
-    // SAFETY: the loan is emptied before this function returns, while `task` is still borrowed. Until then it is read on this thread only (its
-    // class is `unsendable`), by frames above this one, and what they read they do not keep: the methods of `Task` hand out copies.
+    // SAFETY: the loan is emptied before this function returns, while `task` is still borrowed. Until then
+    // it is read on this thread only (its
+    // class is `unsendable`), by frames above this one, and what they read they do not keep: the methods of
+    // `Task` hand out copies.
     let forever = unsafe { std::mem::transmute::<api::Task<'_>, api::Task<'static>>(*task) };
     let lent = Bound::new(py, super::task::Task(Loan(Cell::new(Some(forever)))))?;
     let borrowed = lent.borrow();

@@ -1,7 +1,9 @@
 //! The six roles, played by Python classes.
 //!
-//! A class is registered under an id; its entry's functions find it by a number that is part of their type, for an entry holds bare function
-//! pointers. An exception in a plugin becomes a fault of the call, and is raised again, as it was, where the run ends.
+//! A class is registered under an id; its entry's functions find it by a number that is part of their type,
+//! for an entry holds bare function
+//! pointers. An exception in a plugin becomes a fault of the call, and is raised again, as it was, where the
+//! run ends.
 
 mod contact_model;
 mod convert;

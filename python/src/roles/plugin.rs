@@ -38,7 +38,8 @@ impl Plugin {
         })
     }
 
-    /// A call of the plugin in `slot` that draws random numbers and counts: its context is handed over and taken back.
+    /// A call of the plugin in `slot` that draws random numbers and counts: its context is handed over and
+    /// taken back.
     pub fn with_context<R>(
         &self,
         slot: Slot,

@@ -94,7 +94,11 @@ pub fn register(
 }
 
 fn schema<const N: usize>() -> String {
-    pool().get(N).map(|registered| registered.schema.clone()).unwrap_or_default()
+    schema_at(N)
+}
+
+fn schema_at(place: usize) -> String {
+    pool().get(place).map(|registered| registered.schema.clone()).unwrap_or_default()
 }
 
 fn class(py: Python<'_>, place: usize) -> Option<(&'static str, Py<PyAny>)> {
@@ -102,8 +106,16 @@ fn class(py: Python<'_>, place: usize) -> Option<(&'static str, Py<PyAny>)> {
 }
 
 fn check<const N: usize>(json: &str) -> Result<(), SettingsError> {
+    check_at(N, json)
+}
+
+fn check_at(place: usize, json: &str) -> Result<(), SettingsError> {
+    let form = |error: serde_json::Error| SettingsError::Form(error.to_string());
+    let value = serde_json::from_str(if json.trim().is_empty() { "{}" } else { json }).map_err(form)?;
+    let known = serde_json::from_str(&schema_at(place)).unwrap_or_default();
+    api::check_schema(&value, &known)?;
     Python::attach(|py| {
-        let Some((_, class)) = class(py, N) else { return Ok(()) };
+        let Some((_, class)) = class(py, place) else { return Ok(()) };
         let module = py.import("regrasp._roles").map_err(|error| SettingsError::Form(error.to_string()))?;
         let checked = module.call_method1("check_settings", (class, json));
         checked.map(drop).map_err(|error| SettingsError::Form(error.value(py).to_string()))
@@ -112,6 +124,7 @@ fn check<const N: usize>(json: &str) -> Result<(), SettingsError> {
 
 fn build(place: usize, json: &str, parts: &Parts<'_>) -> Result<Plugin, BuildError> {
     let stash = Stash::current();
+    check_at(place, json)?;
     Python::attach(|py| {
         let (id, class) =
             class(py, place).ok_or_else(|| BuildError::Unsupported("it is no longer registered".into()))?;

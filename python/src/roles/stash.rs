@@ -6,7 +6,8 @@ use regrasp::api::{CallError, Interrupt};
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How the number of a kept exception stands in a fault's message: threads compute ahead, and only the fault that is consumed counts.
+/// How the number of a kept exception stands in a fault's message: threads compute ahead, and only the fault
+/// that is consumed counts.
 const MARK: &str = " [exception ";
 
 thread_local! {
@@ -26,7 +27,8 @@ impl Stash {
         Arc::new(Self { kept: Mutex::default(), watch: Some(Arc::clone(watch)) })
     }
 
-    /// The stash of the run that builds its plugins on this thread; one of its own for a plugin that is built outside of any.
+    /// The stash of the run that builds its plugins on this thread; one of its own for a plugin that is
+    /// built outside of any.
     pub fn current() -> Arc<Self> {
         CURRENT.with_borrow(|current| current.clone()).unwrap_or_default()
     }

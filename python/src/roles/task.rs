@@ -1,4 +1,5 @@
-//! The task that samplers and local planners are handed: services and the other roles, for the time of one call.
+//! The task that samplers and local planners are handed: services and the other roles, for the time of one
+//! call.
 
 use super::convert::{fingers, matrix, to_finger, to_fingers, to_joints, to_pose, to_vector, vector};
 use super::data::{Configuration, Contact, Context, Grasp};

@@ -5,7 +5,6 @@ mod hold;
 mod limits;
 mod mesh_source;
 mod object;
-mod pose;
 mod problem;
 
 pub use hand::*;
@@ -13,5 +12,4 @@ pub use hold::*;
 pub use limits::*;
 pub use mesh_source::*;
 pub use object::*;
-pub use pose::*;
 pub use problem::*;

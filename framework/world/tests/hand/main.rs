@@ -1,5 +1,4 @@
-//! Hands: forward kinematics and Jacobians against independent formulas, inverse kinematics, limits, reach,
-//! bad descriptions.
+//! Hands: forward kinematics and Jacobians against independent formulas, inverse kinematics, limits, reach, bad descriptions.
 
 mod bad;
 mod driven;

@@ -2,7 +2,6 @@
 
 pub(crate) mod constraint;
 mod jump;
-mod roller;
 mod span;
 mod step;
 

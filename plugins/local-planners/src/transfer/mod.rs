@@ -1,5 +1,4 @@
-//! What transfer planners share: the object's straight motion, the length of steps, what fingertips they are
-//! for.
+//! What transfer planners share: the object's straight motion, the length of steps, what fingertips they are for.
 
 mod motion;
 mod pace;

@@ -1,0 +1,231 @@
+"""The planner's pieces by themselves, over arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _regrasp
+from ._errors import ArgumentError
+from ._planning import native_changes, whole
+from ._regrasp import Configuration
+from ._scenario import Scenario
+from ._spatial import Array, array
+
+
+def _grasps(
+    points: npt.ArrayLike, normals: npt.ArrayLike, friction: npt.ArrayLike, torsion: npt.ArrayLike
+) -> tuple[bool, Array, Array, Array]:
+    """Whether one grasp alone is given, and points, unit normals and cones of all."""
+    alone = np.ndim(points) == 2
+    p = array("points", np.asarray(points)[None] if alone else points, (None, None, 3))
+    n = array("normals", np.asarray(normals)[None] if alone else normals, p.shape)
+    lengths = np.linalg.norm(n, axis=-1, keepdims=True)
+    if (lengths < 1e-9).any():
+        raise ArgumentError("`normals` hold one of the length 0", key="normals")
+    cones = np.empty((*p.shape[:2], 2))
+    for column, (key, value) in enumerate((("friction", friction), ("torsion", torsion))):
+        numbers = np.asarray(value, dtype=np.float64)
+        if not np.isfinite(numbers).all() or (numbers < 0).any():
+            raise ArgumentError(f"`{key}` holds numbers outside 0..", key=key, range="0..")
+        try:
+            cones[..., column] = np.broadcast_to(numbers, p.shape[:2])
+        except ValueError as error:
+            raise ArgumentError(f"`{key}` has shape {numbers.shape}, not {p.shape[:2]}", key=key) from error
+    return alone, p, np.ascontiguousarray(n / lengths), cones
+
+
+def force_closure(
+    points: npt.ArrayLike, normals: npt.ArrayLike, friction: npt.ArrayLike = 0.8, torsion: npt.ArrayLike = 0.0
+) -> npt.NDArray[np.bool_]:
+    """Whether grasps are force closure: some forces within the friction cones resist every small wrench.
+
+    Exact for elliptic cones; too close to the boundary counts as not closed. About a microsecond for a grasp.
+
+    Parameters
+    ----------
+    points : array_like, (N, K, 3) or (K, 3)
+        Contact points (m) of N grasps of K contacts each, 1 to 8, in the object's frame.
+    normals : array_like, same shape
+        Outward normals, of any length but 0.
+    friction, torsion : array_like, broadcast to (N, K)
+        Coefficients of friction (no unit) and torsional radii (m); 0 torsion is a point contact.
+
+    Returns
+    -------
+    ndarray of bool, (N,), or () for one grasp
+    """
+    alone, p, n, cones = _grasps(points, normals, friction, torsion)
+    verdicts = _regrasp.force_closure(p, n, cones)
+    return verdicts[0] if alone else verdicts
+
+
+def closure_margin(
+    points: npt.ArrayLike,
+    normals: npt.ArrayLike,
+    friction: npt.ArrayLike = 0.8,
+    torsion: npt.ArrayLike = 0.0,
+    *,
+    center: npt.ArrayLike | None = None,
+    length: float | None = None,
+) -> Array:
+    """Bounds of the closure margin: the largest ball of wrenches that unit total normal force resists.
+
+    Source: Ferrari and Canny, "Planning optimal grasps", ICRA 1992, with the sum of the normal forces
+    bounded.
+
+    Parameters
+    ----------
+    points, normals, friction, torsion
+        As for :func:`force_closure`.
+    center : array_like, (3,), optional
+        The point that torques are taken about (m); each grasp's own centroid where absent.
+    length : float, optional
+        What torques are divided by (m); each grasp's own size where absent. Give both to compare grasps.
+
+    Returns
+    -------
+    ndarray, (N, 2), or (2,) for one grasp
+        A certified lower bound, 0 or less where the grasp is not closed, and an upper bound.
+    """
+    alone, p, n, cones = _grasps(points, normals, friction, torsion)
+    about = None if center is None else array("center", center, (3,)).tolist()
+    if length is not None and not 0 < length < np.inf:
+        raise ArgumentError(
+            f"`length` = {length} is outside 0..", key="length", value=str(length), range="0.."
+        )
+    margins = _regrasp.closure_margins(p, n, cones, about, length)
+    return margins[0] if alone else margins
+
+
+def internal_forces(
+    points: npt.ArrayLike, normals: npt.ArrayLike, friction: npt.ArrayLike = 0.8, torsion: npt.ArrayLike = 0.0
+) -> Array:
+    """Forces on the object that balance each other, strictly inside every cone: the proof of closure.
+
+    Returns
+    -------
+    ndarray, (N, K, 3), or (K, 3) for one grasp
+        In the object's frame, in units of the proof (their scale is free); NaN where the grasp is not closed.
+    """
+    alone, p, n, cones = _grasps(points, normals, friction, torsion)
+    forces = _regrasp.internal_forces(p, n, cones)
+    return forces[0] if alone else forces
+
+
+def wrench_cones(
+    points: npt.ArrayLike, normals: npt.ArrayLike, friction: npt.ArrayLike = 0.8, *, edges: int = 8
+) -> Array:
+    """Edges of friction cones as wrenches about the frame's origin: force, then torque.
+
+    Parameters
+    ----------
+    points, normals, friction
+        As for :func:`force_closure`.
+    edges : int
+        Of each cone's inscribed pyramid, 3 or more.
+
+    Returns
+    -------
+    ndarray, (N, K, edges, 6), or (K, edges, 6) for one grasp
+        At unit normal force: forces along the inward normal.
+    """
+    if edges < 3:
+        raise ArgumentError(f"`edges` = {edges} is outside 3..", key="edges", value=str(edges), range="3..")
+    alone, p, n, cones = _grasps(points, normals, friction, 0.0)
+    inward = -n
+    other = np.where(np.abs(inward[..., :1]) < 0.9, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+    t1 = np.cross(inward, other)
+    t1 /= np.linalg.norm(t1, axis=-1, keepdims=True)
+    t2 = np.cross(inward, t1)
+    angles = 2 * np.pi * np.arange(edges) / edges
+    round_ = np.cos(angles)[:, None] * t1[..., None, :] + np.sin(angles)[:, None] * t2[..., None, :]
+    forces = inward[..., None, :] + cones[..., :1, None] * round_
+    torques = np.cross(p[..., None, :], forces)
+    wrenches = np.concatenate([forces, torques], axis=-1)
+    return wrenches[0] if alone else wrenches
+
+
+@dataclass(frozen=True)
+class SurfacePoints:
+    """Contacts on the object: `facets` (N,), `points` (N, 3) in O (m), outward `normals` (N, 3)."""
+
+    facets: npt.NDArray[np.uint32]
+    points: Array
+    normals: Array
+
+    def __len__(self) -> int:
+        return len(self.facets)
+
+
+class Bench:
+    """A scenario with its plugins built, for calls by hand: its surface, its sampler, its stability test.
+
+    Parameters
+    ----------
+    scenario : Scenario, dict, str or path
+        As for :func:`regrasp.plan`.
+    use, settings : dict, optional
+        As for :func:`regrasp.plan`.
+    """
+
+    def __init__(
+        self,
+        scenario: Any,
+        *,
+        use: Mapping[str, Any] | None = None,
+        settings: Mapping[str, Any] | None = None,
+    ) -> None:
+        self.scenario = Scenario.of(scenario)
+        self._native = _regrasp.Bench(self.scenario.native, native_changes(use, settings, None, None))
+
+    def sample_contacts(self, count: int, *, seed: int = 0) -> SurfacePoints:
+        """Random contacts, uniform over what a fingertip can touch."""
+        return SurfacePoints(**self._native.sample_contacts(whole("count", count), whole("seed", seed)))
+
+    def closest_points(self, centers: npt.ArrayLike) -> tuple[SurfacePoints, Array]:
+        """The contacts closest to fingertip centres (N, 3) in O (m), and signed distances (N,) (m),
+        negative inside.
+        """
+        arrays = self._native.closest_points(array("centers", centers, (None, 3)))
+        distances = arrays.pop("distances")
+        return SurfacePoints(**arrays), distances
+
+    def geodesics(self, starts: SurfacePoints, ends: SurfacePoints) -> Array:
+        """Lengths (N,) of the shortest paths on the surface (m); infinite where a fingertip cannot follow."""
+        facets = (
+            np.ascontiguousarray(starts.facets, np.uint32),
+            np.ascontiguousarray(ends.facets, np.uint32),
+        )
+        return self._native.geodesics(_sides(starts), _sides(ends), facets)
+
+    def sample_grasps(
+        self, count: int, *, seed: int = 0, holding: Sequence[int] | None = None, tries: int | None = None
+    ) -> list[Configuration]:
+        """Random admissible configurations in which the fingers `holding` (all by default) hold the object.
+
+        Fewer than `count` where `tries` samples, ten times as many by default, do not give as many.
+        """
+        number = whole("count", count)
+        fingers = None if holding is None else [whole("holding", finger) for finger in holding]
+        most = 10 * number if tries is None else whole("tries", tries)
+        return self._native.sample_grasps(number, whole("seed", seed), fingers, most)
+
+    def margins(self, configurations: Sequence[Configuration]) -> Array:
+        """Bounds (N, 2) of what the scenario's stability test gives configurations, about the object's
+        centre of mass.
+        """
+        return self._native.margins(list(configurations))
+
+
+def _sides(contacts: SurfacePoints) -> tuple[Array, Array]:
+    return array("points", contacts.points, (None, 3)), array("normals", contacts.normals, (None, 3))
+
+
+def sample_grasps(scenario: Any, count: int, **options: Any) -> list[Configuration]:
+    """Random admissible grasps of a scenario: :meth:`Bench.sample_grasps`."""
+    return Bench(scenario).sample_grasps(count, **options)
