@@ -2,8 +2,9 @@
 //!
 //! `cargo run --example 01_test_a_grasp`
 //!
-//! At latitude φ the three forces balance only if each is tilted by φ from its contact's normal. So the grasp is force closure, which means
-//! that the contacts resist every small push and turn, exactly where tan φ is below the coefficient of friction.
+//! At latitude φ the three forces balance only if each is tilted by φ from its contact's normal. So the grasp
+//! is force closure, which means that the contacts resist every small push and turn, exactly where tan φ is
+//! below the coefficient of friction.
 
 use regrasp::api::{
     CallError, Certificate, Cone, Context, FingerIndex, Grasp, GraspContact, Hint, StabilityTest, Vec3,

@@ -2,14 +2,15 @@
 //!
 //! `cargo run --example 02_liftable_fingers`
 //!
-//! A finger may be lifted, and set down elsewhere, while the others hold the object by themselves. That is why the planner searches with one
-//! finger more than are needed to hold.
+//! A finger may be lifted, and set down elsewhere, while the others hold the object by themselves. That is
+//! why the planner searches with one finger more than are needed to hold.
 
 use regrasp::api::{Cone, Context, FingerIndex, Grasp, GraspContact, StabilityTest, Vec3};
 use regrasp::plugins::stability_tests::{ForceClosure, ForceClosureSettings};
 use std::error::Error;
 
-/// Who touches where (m), and the outward normal there: a bar 40 mm wide, the thumb opposite to the middle finger.
+/// Who touches where (m), and the outward normal there: a bar 40 mm wide, the thumb opposite to the middle
+/// finger.
 const CONTACTS: [(&str, [f64; 3], [f64; 3]); 4] = [
     ("thumb", [-0.020, 0.0, 0.0], [-1.0, 0.0, 0.0]),
     ("index", [0.020, -0.025, 0.0], [1.0, 0.0, 0.0]),
@@ -30,7 +31,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let test = ForceClosure::new(ForceClosureSettings::default())?;
     let (grasp, mut context) = (grasp(0.8), Context::seeded(0));
 
-    // All in one call. It may stop as soon as fewer than `enough` can still be found; here one is enough to go on.
+    // All in one call. It may stop as soon as fewer than `enough` can still be found; here one is enough to
+    // go on.
     let enough = 1;
     let liftable = test.liftable(&grasp, enough, &mut context)?;
     for (k, (name, ..)) in CONTACTS.iter().enumerate() {

@@ -2,10 +2,12 @@
 //!
 //! `cargo run --example 03_geodesic`
 //!
-//! A room is 30 long, 12 wide and 12 high. The spider sits in the middle of one end wall, 1 below the ceiling, the fly in the middle of the
-//! other, 1 above the floor. Straight over the ceiling the way is 42. The shortest one crosses five of the six walls, and is 40.
+//! A room is 30 long, 12 wide and 12 high. The spider sits in the middle of one end wall, 1 below the
+//! ceiling, the fly in the middle of the other, 1 above the floor. Straight over the ceiling the way is 42.
+//! The shortest one crosses five of the six walls, and is 40.
 //!
-//! Surfaces are for fingertips: they know the way of the contact point, and the way of the fingertip's centre above it.
+//! Surfaces are for fingertips: they know the way of the contact point, and the way of the fingertip's centre
+//! above it.
 
 use regrasp::api::{Context, Primitive, SurfaceParam, SurfacePath, Vec3};
 use regrasp::plugins::surfaces::geodesic::{Geodesic, GeodesicSettings};

@@ -2,8 +2,9 @@
 //!
 //! `cargo run --example 04_closed_chains`
 //!
-//! Hand, fingers and object form loops. The random loop generator draws the object's pose and a contact for each finger, and closes each chain
-//! by inverse kinematics. Every try that fails has its reason, and the context counts them.
+//! Hand, fingers and object form loops. The random loop generator draws the object's pose and a contact for
+//! each finger, and closes each chain by inverse kinematics. Every try that fails has its reason, and the
+//! context counts them.
 
 use regrasp::api::{Context, FingerSet, PoseRequest, Reason, Slot};
 use std::error::Error;

@@ -1,8 +1,10 @@
-//! From a problem to a plan file, and back: plans, writes the plan, reads it, verifies it, spoils it, verifies again.
+//! From a problem to a plan file, and back: plans, writes the plan, reads it, verifies it, spoils it,
+//! verifies again.
 //!
 //! `cargo run --example 05_plan_and_verify`
 //!
-//! The verifier shares no code with the planner: its own kinematics, its own stability test, exact distances, ten times the plan's resolution.
+//! The verifier shares no code with the planner: its own kinematics, its own stability test, exact distances,
+//! ten times the plan's resolution.
 
 use regrasp::plan::{Plan, SegmentName};
 use std::error::Error;

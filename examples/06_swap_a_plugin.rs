@@ -2,7 +2,8 @@
 //!
 //! `cargo run --example 06_swap_a_plugin`
 //!
-//! A scenario's `choices` say which plugin fills each slot, with which settings. `regrasp plugins` lists what there is.
+//! A scenario's `choices` say which plugin fills each slot, with which settings. `regrasp plugins` lists what
+//! there is.
 
 use regrasp::api::Slot;
 use regrasp::host::Choices;

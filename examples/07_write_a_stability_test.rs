@@ -2,8 +2,9 @@
 //!
 //! `cargo run --example 07_write_a_stability_test`
 //!
-//! Friction is rarely known well. This test relies on a share of it only: a grasp is stable if it is force closure with that much less friction.
-//! `regrasp new-plugin stability-test doubtful` would give it a crate of its own, to be loaded at run time.
+//! Friction is rarely known well. This test relies on a share of it only: a grasp is stable if it is force
+//! closure with that much less friction. `regrasp new-plugin stability-test doubtful` would give it a crate
+//! of its own, to be loaded at run time.
 
 use regrasp::api::{
     Assessment, Build, CallError, Certificate, Cone, Context, Entry, Grasp, Hint, Settings, Slot, Stability,
@@ -72,7 +73,8 @@ impl StabilityTest for Doubtful {
         context: &mut Context<'_>,
     ) -> Result<Assessment, CallError> {
         let exact = self.exact.assess(&self.doubted(grasp), length, center_O, context)?;
-        // Forces in narrow cones lie in wide ones, too: a yes, its proof and its margin hold. A no proves nothing against wide cones.
+        // Forces in narrow cones lie in wide ones, too: a yes, its proof and its margin hold. A no proves
+        // nothing against wide cones.
         let assessed = Assessment { margin_upper: f64::INFINITY, ..exact };
         if assessed.stability.is_stable() {
             return Ok(assessed);

@@ -2,8 +2,9 @@
 //!
 //! `cargo run --example 08_load_a_plugin [LIBRARY]`
 //!
-//! Without a library it builds one: the plugins that `regrasp new-plugin` starts from. A library is read before it is loaded: what was built
-//! by another compiler or from other sources of the framework is refused before any of its code runs.
+//! Without a library it builds one: the plugins that `regrasp new-plugin` starts from. A library is read
+//! before it is loaded: what was built by another compiler or from other sources of the framework is refused
+//! before any of its code runs.
 
 use regrasp::Stopwatch;
 use regrasp::api::Slot;
@@ -28,7 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     assert!(!plugins.is_empty());
 
-    // From here on a loaded plugin is like any other. A panic in it ends the run with an error that names it, not the program.
+    // From here on a loaded plugin is like any other. A panic in it ends the run with an error that names it,
+    // not the program.
     let mut scenario = scenario::load("sphere", &registry)?;
     if let Some(sampler) = plugins.iter().find(|entry| entry.slots.contains(&Slot::Sampler)) {
         scenario.choices.use_plugin(Slot::Sampler, sampler.id);

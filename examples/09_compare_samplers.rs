@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release --example 09_compare_samplers`
 //!
-//! This is what `regrasp compare sphere --vary sampler=rlg,projection --seeds 15 -o study` does for whole suites, in parallel, with reports.
-//! Both samplers get the same seeds, so that what is compared is pairs; the interval says how sure the answer is.
+//! This is what `regrasp compare sphere --vary sampler=rlg,projection --seeds 15 -o study` does for whole
+//! suites, in parallel, with reports. Both samplers get the same seeds, so that what is compared is pairs;
+//! the interval says how sure the answer is.
 
 use regrasp::Stopwatch;
 use regrasp::api::Slot;

@@ -2,8 +2,8 @@
 //!
 //! `cargo run --example 10_own_hand_and_object [FOLDER]`
 //!
-//! With a folder the three files stay there, to be changed and planned by `regrasp plan FOLDER/nut.toml`. A hand may as well be a URDF:
-//! `[hand] urdf = "my-hand.urdf"`.
+//! With a folder the three files stay there, to be changed and planned by `regrasp plan FOLDER/nut.toml`. A
+//! hand may as well be a URDF: `[hand] urdf = "my-hand.urdf"`.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -11,7 +11,8 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-/// One finger: a joint for spreading and two for bending. Metres and radians; all fingers are alike but for name and place.
+/// One finger: a joint for spreading and two for bending. Metres and radians; all fingers are alike but for
+/// name and place.
 const FINGER: &str = r#"
 [[finger]]
 name = "NAME"
@@ -30,7 +31,8 @@ joint = [
 /// Four fingers round a palm, each looking inward.
 fn hand() -> String {
     let mut text = "name = \"my-hand\"\nfingertip_radius = 0.011\n".to_owned();
-    text += "palm = [{ shape = { kind = \"box\", size = [0.15, 0.15, 0.02] }, pose = { position = [0.0, 0.0, -0.02] } }]\n";
+    text += "palm = [{ shape = { kind = \"box\", size = [0.15, 0.15, 0.02] }, pose = { position = [0.0, \
+        0.0, -0.02] } }]\n";
     for (name, x, y, turn) in [
         ("thumb", 0.065, 0.0, 180),
         ("index", 0.0, 0.065, 270),
@@ -43,7 +45,8 @@ fn hand() -> String {
     text
 }
 
-/// A hexagonal prism as an OBJ file in millimetres: corners, then faces that are counter-clockwise seen from outside.
+/// A hexagonal prism as an OBJ file in millimetres: corners, then faces that are counter-clockwise seen from
+/// outside.
 fn nut() -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     for z in [-25.0, 25.0] {

@@ -2,7 +2,8 @@
 //!
 //! `cargo run --example 11_several_goals`
 //!
-//! A scenario is plain data once it is loaded: this one gets other goals than its file has. The plan says after which segment each is reached.
+//! A scenario is plain data once it is loaded: this one gets other goals than its file has. The plan says
+//! after which segment each is reached.
 
 use regrasp::api::{GoalDescription, PoseDescription, angle_between};
 use regrasp::plan::SegmentName;

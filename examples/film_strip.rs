@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release --example film_strip [SCENARIO [FILE.svg]]`
 //!
-//! A finger that holds the object has a dark tip, a lifted one a red tip. The cross painted on the object shows how it turns.
+//! A finger that holds the object has a dark tip, a lifted one a red tip. The cross painted on the object
+//! shows how it turns.
 
 use regrasp::view::picture::{Picture, Scene, sheet};
 use std::error::Error;

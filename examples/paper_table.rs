@@ -1,10 +1,11 @@
 //! The paper's Table 1 beside ours: each example solved with 100 seeds and every plan verified.
 //!
-//! `cargo run --release --example paper_table [SEEDS [SCENARIO…]]`; `regrasp compare --suite paper --seeds 100 -o DIR` does the same for the
-//! paper's three, in parallel, and keeps the runs.
+//! `cargo run --release --example paper_table [SEEDS [SCENARIO…]]`; `regrasp compare --suite paper --seeds
+//! 100 -o DIR` does the same for the paper's three, in parallel, and keeps the runs.
 //!
-//! The paper: A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007, averages on an
-//! Athlon64 3500+. It gives no dimensions, so that the problems are alike, not the same.
+//! The paper: A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation
+//! planning", SSD 2007, averages on an Athlon64 3500+. It gives no dimensions, so that the problems are
+//! alike, not the same.
 
 use regrasp::Stopwatch;
 use regrasp::run::scenario::Scenario;

@@ -1,9 +1,11 @@
-//! Random starts and goals: a ball and a cube between 200 pairs of random orientations each, every plan verified.
+//! Random starts and goals: a ball and a cube between 200 pairs of random orientations each, every plan
+//! verified.
 //!
 //! `cargo run --release --example random_pairs [PAIRS [SCENARIO…]]`
 //!
-//! Start and goal keep the scenario's position; both orientations are uniform, and no grasp is given. A pair counts as solved if planning
-//! takes at most two seconds. What is not solved is listed with the seed that repeats it and the rejections that led there.
+//! Start and goal keep the scenario's position; both orientations are uniform, and no grasp is given. A pair
+//! counts as solved if planning takes at most two seconds. What is not solved is listed with the seed that
+//! repeats it and the rejections that led there.
 
 use regrasp::Stopwatch;
 use regrasp::api::{Pose, PoseDescription, Random, Reason, Slot};

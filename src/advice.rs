@@ -5,8 +5,8 @@ use crate::plan::{Statistics, StoppedBy};
 use crate::planner::Stuck;
 use crate::run::Run;
 
-/// What is worth trying after a run that is not solved, from where it got stuck and what it rejected most; options of the command
-/// line stand in backquotes.
+/// What is worth trying after a run that is not solved, from where it got stuck and what it rejected most;
+/// options of the command line stand in backquotes.
 pub fn advice(run: &Run) -> String {
     let outcome = &run.outcome;
     let cause = most_frequent(&outcome.statistics);
@@ -18,14 +18,18 @@ pub fn advice(run: &Run) -> String {
         (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), Some(Reason::Reach | Reason::Limits)) => {
             format!("most grasps are out of reach: move {place} closer to the hand")
         }
-        (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), Some(Reason::Collision | Reason::Retreat)) => format!(
-            "most grasps collide: move {place} away from palm and obstacles, or lower `limits.resolution.clearance`"
-        ),
+        (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), Some(Reason::Collision | Reason::Retreat)) => {
+            format!(
+                "most grasps collide: move {place} away from palm and obstacles, or lower \
+                `limits.resolution.clearance`"
+            )
+        }
         (Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)), _) => {
             format!("change {place}, or raise the friction")
         }
         _ if run.stopped_by == Some(StoppedBy::MaxNodes) && mostly_collides(&outcome.statistics) => {
-            "most motions collide: look whether palm, obstacles and fingers leave a way; if they do, raise `--max-nodes` or add a goal \
+            "most motions collide: look whether palm, obstacles and fingers leave a way; if they do, raise \
+                `--max-nodes` or add a goal \
              half way"
                 .into()
         }

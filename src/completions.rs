@@ -35,8 +35,8 @@ fn shown(program: &Command) -> Command {
     Command::new("regrasp").version(env!("CARGO_PKG_VERSION")).subcommands(commands.cloned())
 }
 
-/// The program with the names that its arguments can have. A scenario can be a file too: bash offers files beside names, other shells
-/// would not.
+/// The program with the names that its arguments can have. A scenario can be a file too: bash offers files
+/// beside names, other shells would not.
 fn with_names(program: Command, shell: Shell) -> Result<Command, Failure> {
     let registry = Registry::linked().map_err(Failure::refused)?;
     let roles = Role::ALL.map(Role::name).to_vec();

@@ -24,7 +24,8 @@ pub fn save(path: &Path, scenario: &Scenario, setup: &Setup<'_>, run: &Run) -> R
     let mut records = Vec::new();
     for (number, q) in graph.nodes().iter().enumerate() {
         let margin = setup.margin(q).map_err(Failure::refused)?;
-        // A given start may be no stable grasp of the stability test at rest; the cache holds stable ones alone.
+        // A given start may be no stable grasp of the stability test at rest; the cache holds stable ones
+        // alone.
         if margin > 0.0 {
             let component = graph.component(regrasp::api::NodeId(number as u32)).0 as usize;
             records.push(GraspRecord { q: q.clone(), component, margin });

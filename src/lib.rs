@@ -1,5 +1,6 @@
-//! Regrasp plans how a multi-fingered hand takes an object from one pose to another: by *transfers* (the object moves, the fingertips roll
-//! without slip) and *regrasps* (the object rests, one finger moves), the grasp being stable at every instant.
+//! Regrasp plans how a multi-fingered hand takes an object from one pose to another: by *transfers* (the
+//! object moves, the fingertips roll without slip) and *regrasps* (the object rests, one finger moves), the
+//! grasp being stable at every instant.
 //!
 //! ```
 //! let scenario = regrasp::load("sphere")?; // a built-in scenario, or a file
@@ -22,13 +23,15 @@
 //! | [`LocalPlanner`](api::LocalPlanner) | connects two configurations by sliding, rolling or regrasping | [`linear`](plugins::local_planners::Linear), [`rolling`](plugins::local_planners::Rolling), [`rrt`](plugins::local_planners::Rrt) |
 //! | [`GraphStrategy`](api::GraphStrategy) | what to do next with the manipulation graph | [`interleaved`](plugins::graph_strategies::Interleaved) |
 //!
-//! The defaults are those of A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007.
-//! Another plugin for a run is one line, `scenario.choices.use_plugin(Slot::StabilityTest, "socp")`. A plugin of your own is a type that
-//! implements its role and an [`Entry`](api::Entry) that registers it; [`api`]'s page shows a whole one.
+//! The defaults are those of A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous
+//! manipulation planning", SSD 2007. Another plugin for a run is one line,
+//! `scenario.choices.use_plugin(Slot::StabilityTest, "socp")`. A plugin of your own is a type that implements
+//! its role and an [`Entry`](api::Entry) that registers it; [`api`]'s page shows a whole one.
 //!
 //! Where [`load`] and [`solve`] are too simple: [`setup`] builds the plugins once and lets you call them
-//! ([`Setup::task`], [`Setup::plugins`]), [`Setup::run`] takes a time limit, threads and progress, [`Registry::with_libraries`] loads plugins at
-//! run time, and [`study::compare`](mod@study::compare) compares combinations of plugins. The package's `examples/` has one small program for each of these.
+//! ([`Setup::task`], [`Setup::plugins`]), [`Setup::run`] takes a time limit, threads and progress,
+//! [`Registry::with_libraries`] loads plugins at run time, and [`study::compare`](mod@study::compare)
+//! compares combinations of plugins. The package's `examples/` has one small program for each of these.
 
 mod advice;
 pub mod page;
@@ -69,7 +72,8 @@ use run::scenario::{self, Scenario};
 use run::{Run, RunError, Setup};
 use std::time::Duration;
 
-/// Loads the built-in scenario of this name, or else the file; it may use the plugins that are linked into the program.
+/// Loads the built-in scenario of this name, or else the file; it may use the plugins that are linked into
+/// the program.
 pub fn load(name: &str) -> Result<Scenario, RunError> {
     Ok(scenario::load(name, &Registry::linked()?)?)
 }
@@ -81,7 +85,8 @@ pub fn setup(scenario: &Scenario) -> Result<Setup<'_>, RunError> {
 
 /// Plans, and verifies the plan: on one thread, until the scenario's own limits end the search.
 ///
-/// The same scenario and seed give the same plan. That none was found is no error: [`Run::why_not_solved`] says why.
+/// The same scenario and seed give the same plan. That none was found is no error: [`Run::why_not_solved`]
+/// says why.
 pub fn solve(scenario: &Scenario, seed: u64) -> Result<Run, RunError> {
     let limit = scenario.problem.limits.budget.time_limit.map(Duration::from_secs_f64);
     let watch = limit.map_or_else(Stopwatch::start, Stopwatch::limited);

@@ -9,7 +9,8 @@ use std::path::PathBuf;
 /// Print the program's manual page, or write it and a page for each command to a folder.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  regrasp man | man -l -\n  regrasp man -o ~/.local/share/man/man1 && man regrasp-plan"
+    after_help = "Examples:\n  regrasp man | man -l -\n  regrasp man -o ~/.local/share/man/man1 && man \
+        regrasp-plan"
 )]
 pub struct ManArgs {
     /// Write all pages into this folder, which is made where there is none.

@@ -4,13 +4,15 @@ use crate::args::{LibraryArgs, NewPluginArgs};
 use crate::{Failure, plugins, say};
 use regrasp::api::{Role, Slot, did_you_mean, near};
 use regrasp::host::Choices;
+use regrasp_template::text;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The tree that this program was built from.
 const OWN_TREE: &str = env!("CARGO_MANIFEST_DIR");
-/// This program's own lock file: with it a plugin is built of the very crates that this program was built of, without a network.
+/// This program's own lock file: with it a plugin is built of the very crates that this program was built of,
+/// without a network.
 const LOCK: &str = include_str!("../Cargo.lock");
 
 /// What the name of the template's plugins is replaced with.
@@ -69,7 +71,8 @@ fn framework(given: Option<&Path>) -> Result<PathBuf, Failure> {
         let message = match given {
             Some(_) => format!("`{}` is no checkout of Regrasp: it has no `framework/api`", tree.display()),
             None => format!(
-                "the sources that this program was built from are gone (`{OWN_TREE}`); give a checkout of the same version: `--framework PATH`"
+                "the sources that this program was built from are gone (`{OWN_TREE}`); give a checkout of \
+                    the same version: `--framework PATH`"
             ),
         };
         return Err(Failure::bad_input(message));
@@ -94,7 +97,7 @@ struct Draft {
 
 impl Draft {
     fn new(role: Role, name: &str, framework: &Path) -> Result<Self, Failure> {
-        let (source, slot) = template(role);
+        let (source, slot) = text::module(role);
         let package = format!("{name}-{}", role.name());
         let library = format!("{DLL_PREFIX}{}_dynamic{DLL_SUFFIX}", package.replace('-', "_"));
         let quoted = |name: &str| {
@@ -128,18 +131,18 @@ impl Draft {
     /// The files by their paths in the crate.
     fn files(&self) -> [(&'static str, String); 8] {
         let conformance = match self.is_surface {
-            true => include_str!("../plugins/template/crate/conformance_surface.rs.in"),
-            false => include_str!("../plugins/template/crate/conformance.rs.in"),
+            true => text::CONFORMANCE_OF_SURFACE,
+            false => text::CONFORMANCE,
         };
         [
-            ("Cargo.toml", self.fill(include_str!("../plugins/template/crate/Cargo.toml.in"))),
+            ("Cargo.toml", self.fill(text::MANIFEST)),
             ("Cargo.lock", LOCK.to_owned()),
             (".gitignore", "/target\n".to_owned()),
-            ("README.md", self.fill(include_str!("../plugins/template/crate/README.md.in"))),
+            ("README.md", self.fill(text::README)),
             ("src/lib.rs", self.source.replace(TEMPLATE_NAME, &self.fill("/{{name}}\""))),
             ("tests/conformance.rs", self.fill(conformance)),
-            ("dynamic/Cargo.toml", self.fill(include_str!("../plugins/template/crate/dynamic.toml.in"))),
-            ("dynamic/src/lib.rs", self.fill(include_str!("../plugins/template/crate/dynamic.rs.in"))),
+            ("dynamic/Cargo.toml", self.fill(text::DYNAMIC_MANIFEST)),
+            ("dynamic/src/lib.rs", self.fill(text::DYNAMIC)),
         ]
     }
 
@@ -172,24 +175,6 @@ fn default_name(slot: Slot) -> String {
 /// What a source says of itself in its first line.
 fn summary(source: &str) -> &str {
     source.lines().next().unwrap_or_default().trim_start_matches("//! ").trim_end_matches('.')
-}
-
-/// The template of a role: its source, and the slot that it fills.
-fn template(role: Role) -> (&'static str, Slot) {
-    match role {
-        Role::ContactModel => (include_str!("../plugins/template/src/contact_model.rs"), Slot::ContactModel),
-        Role::StabilityTest => {
-            (include_str!("../plugins/template/src/stability_test.rs"), Slot::StabilityTest)
-        }
-        Role::Surface => (include_str!("../plugins/template/src/surface.rs"), Slot::Surface),
-        Role::Sampler => (include_str!("../plugins/template/src/sampler.rs"), Slot::Sampler),
-        Role::LocalPlanner => {
-            (include_str!("../plugins/template/src/local_planner.rs"), Slot::RegraspPlanner)
-        }
-        Role::GraphStrategy => {
-            (include_str!("../plugins/template/src/graph_strategy.rs"), Slot::GraphStrategy)
-        }
-    }
 }
 
 #[cfg(test)]

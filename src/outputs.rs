@@ -1,7 +1,7 @@
 //! What a command would write is checked before anything is computed, so that no file of the user's is lost.
 //!
-//! Three rules: an output is none of the inputs, however either is spelt; two outputs are two files; a file that is
-//! there already is replaced only by its own kind, unless `--force` says otherwise.
+//! Three rules: an output is none of the inputs, however either is spelt; two outputs are two files; a file
+//! that is there already is replaced only by its own kind, unless `--force` says otherwise.
 
 use crate::Failure;
 use std::fs::{self, File};
@@ -52,7 +52,8 @@ impl Kind {
         }
     }
 
-    /// Texts of which one stands in the first [`HEAD`] bytes of each file of this kind that this program wrote.
+    /// Texts of which one stands in the first [`HEAD`] bytes of each file of this kind that this program
+    /// wrote.
     fn marks(self) -> &'static [&'static str] {
         match self {
             Kind::Plan => &["\"regrasp-plan\""],
@@ -107,7 +108,8 @@ pub fn check_folder(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// A scenario file and all files that it names, those of its hand file included: nothing of these may be replaced.
+/// A scenario file and all files that it names, those of its hand file included: nothing of these may be
+/// replaced.
 pub fn files_of(scenario: &str) -> Vec<PathBuf> {
     let path = PathBuf::from(scenario);
     let mut files = vec![path.clone()];

@@ -116,7 +116,8 @@ pub fn bare(entry: &Entry) -> &'static str {
     entry.id.split_once('/').map_or(entry.id, |(_, name)| name)
 }
 
-/// The table of a scenario that chooses the plugin, with all its settings at their defaults; those that have none are commented out.
+/// The table of a scenario that chooses the plugin, with all its settings at their defaults; those that have
+/// none are commented out.
 pub fn in_scenario(entry: &Entry, schema: &Value) -> String {
     let slot = entry.slots.first().map_or("", |slot| slot.name());
     let line = |(key, property): (&String, Property<'_>)| match (property.default(), property.example()) {

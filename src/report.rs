@@ -119,17 +119,19 @@ impl Summary<'_> {
             duration(self.run).unwrap_or(0.0)
         );
         let Some(certificate) = &plan.certificate else { return text };
+        // Clearance is a bound over all times; the others are what the verifier's samples show.
         let mut figure = |name: &str, extreme: &Option<Extreme>, scale: f64, unit: &str| {
             if let Some(extreme) = extreme {
                 let (value, place) =
                     (extreme.value * scale, place_text(&extreme.place, &self.scenario.problem));
-                text += &format!("  {name:<13} {value:.3}{unit} ({place})\n");
+                let least = if name == "clearance" { "at least " } else { "" };
+                text += &format!("  {name:<13} {least}{value:.3}{unit} ({place})\n");
             }
         };
         figure("margin", &certificate.closure_margin, 1.0, "");
         figure("clearance", &certificate.clearance, 1e3, " mm");
-        figure("slip", &certificate.slip, 1e3, " mm");
-        figure("closure", &certificate.closure_residual, 1e6, " µm");
+        figure("slip", &certificate.slip, 1e3, " mm, sampled");
+        figure("closure", &certificate.closure_residual, 1e6, " µm, sampled");
         text += &holds_lines(certificate.holds.as_ref(), &self.scenario.problem);
         text + &self.remarks()
     }

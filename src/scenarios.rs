@@ -1,36 +1,34 @@
-//! `regrasp scenarios`
+//! `regrasp scenarios`: what is built in, read but not built.
 
 use crate::args::ScenariosArgs;
 use crate::table::Table;
 use crate::{Failure, say, say_json};
 use regrasp::api::{did_you_mean, near};
-use regrasp::host::Registry;
-use regrasp::run::scenario::{self, HANDS, SCENARIOS, Scenario};
+use regrasp::run::scenario::{self, BuiltIn, HANDS, SCENARIOS, ScenarioFile};
 use serde_json::{Value, json};
 
 pub fn run(args: &ScenariosArgs) -> Result<(), Failure> {
     if let Some(name) = &args.name {
         return print_file(name);
     }
-    let registry = Registry::linked().map_err(Failure::refused)?;
-    let load = |name| scenario::load(name, &registry).map_err(Failure::refused);
-    let scenarios = SCENARIOS.iter().map(|file| load(file.name)).collect::<Result<Vec<_>, _>>()?;
+    let read = |file: &BuiltIn| file.read().map(|scenario| (file.name, scenario)).map_err(Failure::refused);
+    let scenarios = SCENARIOS.iter().map(read).collect::<Result<Vec<_>, _>>()?;
     if args.json {
         return say_json(&Value::Array(scenarios.iter().map(described).collect()));
     }
     let mut table = Table::new("<", &["scenario", "what it shows"]);
-    scenarios.iter().for_each(|scenario| table.row([scenario.name.clone(), scenario.summary.clone()]));
+    scenarios.iter().for_each(|(name, scenario)| table.row([(*name).to_owned(), scenario.summary.clone()]));
     let hands: Vec<&str> = HANDS.iter().map(|hand| hand.name).collect();
     say(&format!("{}\n  hands: {}\n", table.text(), hands.join(", ")))
 }
 
-fn described(scenario: &Scenario) -> Value {
+fn described((name, scenario): &(&str, ScenarioFile)) -> Value {
     json!({
-        "name": scenario.name,
+        "name": name,
         "summary": scenario.summary,
         "source": scenario.source,
         "paper": scenario.paper,
-        "goals": scenario.problem.goal.len(),
+        "goals": scenario.goal.len(),
     })
 }
 

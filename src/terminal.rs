@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 /// The text with control characters made visible, but for the ends of lines and tabs.
 ///
-/// A link or a finger may be called anything; an escape sequence in its name must not move the cursor, recolour the
-/// screen or answer for the user.
+/// A link or a finger may be called anything; an escape sequence in its name must not move the cursor,
+/// recolour the screen or answer for the user.
 pub fn printable(text: &str) -> Cow<'_, str> {
     let is_harmful = |c: char| c.is_control() && c != '\n' && c != '\t';
     if !text.contains(is_harmful) {

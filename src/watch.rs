@@ -13,7 +13,8 @@ use std::time::{Duration, Instant};
 static CTRL_C: AtomicBool = AtomicBool::new(false);
 /// When it was set.
 static FIRST: OnceLock<Instant> = OnceLock::new();
-/// Signals that come closer together are one: `timeout` and others send theirs to the process and to its group.
+/// Signals that come closer together are one: `timeout` and others send theirs to the process and to its
+/// group.
 const SAME: Duration = Duration::from_millis(300);
 
 /// What happens on Ctrl-C.
@@ -24,7 +25,8 @@ fn asked_to_stop() {
     }
 }
 
-/// Listens to Ctrl-C, to a request to end (SIGTERM), and to a terminal that goes away (SIGHUP) unless `nohup` had that ignored.
+/// Listens to Ctrl-C, to a request to end (SIGTERM), and to a terminal that goes away (SIGHUP) unless `nohup`
+/// had that ignored.
 ///
 /// Where no listener can be installed the signals end the program, which is what they do by default.
 #[cfg(unix)]

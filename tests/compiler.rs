@@ -1,9 +1,11 @@
 //! A compiler fault that would make stability tests wrong must show itself here.
 //!
-//! rustc 1.95 (LLVM 22) at opt-level 3 with `target-cpu` x86-64-v3 or `native` compiles this plain f64 code wrongly (the SLP vectoriser): the
-//! answer comes out false. At the baseline target it is right; the project sets no `target-cpu`, and neither should whoever builds it.
+//! rustc 1.95 (LLVM 22) at opt-level 3 with `target-cpu` x86-64-v3 or `native` compiles this plain f64 code
+//! wrongly (the SLP vectoriser): the answer comes out false. At the baseline target it is right; the project
+//! sets no `target-cpu`, and neither should whoever builds it.
 
-/// Whether the vectors span all of space with nonnegative weights: no plane through two of them has all others on one side.
+/// Whether the vectors span all of space with nonnegative weights: no plane through two of them has all
+/// others on one side.
 ///
 /// Written out, since the fault goes away where loops and products are functions of their own.
 #[expect(clippy::needless_range_loop, reason = "other loops hide the fault")]

@@ -1,5 +1,8 @@
 //! House rules that the compiler does not know: who may depend on whom, how long a file may be, what a library may not do.
 
+#[path = "tidy/cycles.rs"]
+mod cycles;
+
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -13,10 +16,11 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-world", &["regrasp-api"]),
     ("regrasp-hands", &["regrasp-api", "regrasp-formats", "regrasp-world"]),
     ("regrasp-plan", &["regrasp-api"]),
+    ("regrasp-fingerprint", &[]),
     ("regrasp-abi", &["regrasp-api"]),
     ("regrasp-host", &["regrasp-abi", "regrasp-api"]),
     ("regrasp-planner", &["regrasp-abi", "regrasp-api", "regrasp-plan"]),
-    ("regrasp-verify", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
+    ("regrasp-verify", &["regrasp-api", "regrasp-plan"]),
     ("regrasp-view", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
     ("regrasp-audit", &["regrasp-api"]),
     ("regrasp-conformance", &["regrasp-api", "regrasp-audit", "regrasp-world"]),
@@ -56,6 +60,7 @@ const PRIVATE: &[(&str, &[&str])] = &[
     ("clap", &["regrasp"]),
     ("rapier3d-f64", &["regrasp-physics"]),
     ("faer", &["regrasp-surfaces"]),
+    ("proc-macro2", &["regrasp-fingerprint"]),
     ("rand", &[]),
 ];
 
@@ -258,5 +263,62 @@ fn no_file_sets_a_target_cpu() {
     for file in ["Cargo.toml", ".cargo/config.toml", ".cargo/config", ".ci/run"] {
         let text = fs::read_to_string(root().join(file)).unwrap_or_default();
         assert!(!text.contains("target-cpu"), "{file} sets a target-cpu");
+    }
+}
+
+#[test]
+fn no_files_use_each_other_in_a_circle() {
+    let rooms = ["framework", "plugins", TUTORIALS];
+    let crates = rooms.iter().flat_map(|room| fs::read_dir(root().join(room)).expect("a folder"));
+    let sources = crates.map(|entry| entry.expect("a folder").path().join("src"));
+    let sources: Vec<PathBuf> = sources.filter(|src| src.is_dir()).chain([root().join("src")]).collect();
+    assert!(sources.len() > 20, "only {} crates were found", sources.len());
+    for src in sources {
+        let circles = cycles::cycles(&src);
+        assert!(circles.is_empty(), "{}: {circles:?}; name the room that they share", src.display());
+    }
+}
+
+#[test]
+fn circles_are_found_also_through_re_exports() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let write =
+        |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("it can be written");
+    write("lib.rs", "mod a;\nmod b;\npub use a::*;\npub use b::Two;\n");
+    write("a.rs", "use crate::Two;\npub struct One(Two);\n");
+    write("b.rs", "pub struct Two;\n");
+    assert!(cycles::cycles(folder.path()).is_empty());
+    write("b.rs", "pub struct Two;\npub fn two(_: crate::One) {}\n");
+    assert_eq!(cycles::cycles(folder.path()), [["a.rs", "b.rs"]]);
+}
+
+/// The most columns of a line.
+const MAX_WIDTH: usize = 110;
+
+#[test]
+fn lines_are_no_wider_than_a_screen() {
+    // A text that must stand in one line is excused: it has no blank to break at.
+    let can_break = |line: &str| line.trim().trim_start_matches(['/', '!', ' ', '"']).contains(' ');
+    let wide = |file: &PathBuf| {
+        let text = read(file);
+        let wide = text.lines().position(|line| line.chars().count() > MAX_WIDTH && can_break(line))?;
+        Some(format!("{}:{}", file.display(), wide + 1))
+    };
+    let all: Vec<String> = rust_files().iter().filter_map(wide).collect();
+    assert!(all.len() <= WIDE_FILES, "wider than {MAX_WIDTH} columns: {}", all.join(", "));
+}
+
+/// How many files still have wider lines; only ever made smaller.
+const WIDE_FILES: usize = 0;
+
+#[test]
+fn public_functions_of_libraries_return_errors_with_fields() {
+    for file in rust_files() {
+        let Some(code) = library_code(&file) else { continue };
+        let code = code.split_whitespace().collect::<Vec<_>>().join(" ");
+        for signature in code.split("pub fn ").skip(1) {
+            let head = signature.split(['{', ';']).next().unwrap_or_default();
+            assert!(!head.contains(", String>") || !head.contains("Result<"), "{}: {head}", file.display());
+        }
     }
 }

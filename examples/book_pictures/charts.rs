@@ -10,7 +10,8 @@ use std::fmt::Write;
 /// Begins a drawing of this size (px).
 fn paper(width: f64, height: f64) -> String {
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"sans-serif\" font-size=\"12\">\n\
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" \
+            font-family=\"sans-serif\" font-size=\"12\">\n\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     )
 }
@@ -76,7 +77,8 @@ pub fn timeline(example: &Example<'_>) -> Result<String, Box<dyn Error>> {
     Ok(text + "</svg>\n")
 }
 
-/// The cube from above: a contact's way from one face to the next, and the way of the fingertip's centre over it.
+/// The cube from above: a contact's way from one face to the next, and the way of the fingertip's centre over
+/// it.
 pub fn offset(example: &Example<'_>) -> Result<String, Box<dyn Error>> {
     let radius = example.hand().fingertip_radius();
     let half = 0.5 * 0.045;

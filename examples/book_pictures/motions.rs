@@ -127,7 +127,8 @@ pub fn liftable(example: &Example<'_>) -> Drawn {
     Ok(sheet(&frames, 3))
 }
 
-/// Two nodes that a path in GS_n joins: the contacts slide along it (above); rolled over the same way, they go elsewhere (below).
+/// Two nodes that a path in GS_n joins: the contacts slide along it (above); rolled over the same way, they
+/// go elsewhere (below).
 pub fn slide_and_roll(example: &Example<'_>) -> Drawn {
     let (task, mut context) = (example.setup.task(), Context::seeded(0));
     let graph = example.graph();

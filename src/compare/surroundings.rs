@@ -1,4 +1,5 @@
-//! What a study records of its surroundings: the program, the machine, the time. The library looks at none of them.
+//! What a study records of its surroundings: the program, the machine, the time. The library looks at none of
+//! them.
 
 use crate::Failure;
 use regrasp::study::compare::{Machine, fingerprint};

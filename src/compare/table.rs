@@ -6,7 +6,8 @@ use regrasp::study::compare::{self, Cell, PaperRow, RunRecord, RunStatus, Study}
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// A row for each scenario and variant; where nothing is compared but with what was published, the paper's table.
+/// A row for each scenario and variant; where nothing is compared but with what was published, the paper's
+/// table.
 pub fn text(study: &Study, records: &[RunRecord]) -> String {
     let cells: Vec<Cell<'_>> = compare::analyse(study, records).into_iter().flatten().collect();
     let published = study.scenarios.iter().any(|scenario| scenario.paper.is_some());

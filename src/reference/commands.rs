@@ -7,7 +7,8 @@ use clap::{Arg, ArgAction, Command};
 pub fn page(mut program: Command) -> String {
     program.build();
     let mut text = format!("{GENERATED}# Commands\n\n{}.\n\n", described(&program));
-    text += "Every command has `--help`, which says the same as this page. What went wrong is said on standard error; standard output has the \
+    text += "Every command has `--help`, which says the same as this page. What went wrong is said on \
+        standard error; standard output has the \
              results alone. [Exit codes](exit-codes.md) tell a script how a command ended.\n\n";
     let shown =
         || program.get_subcommands().filter(|command| !command.is_hide_set() && command.get_name() != "help");

@@ -1,8 +1,10 @@
-//! Examples of keys, taken from files that are kept with the program: they are read by its tests, so they are right.
+//! Examples of keys, taken from files that are kept with the program: they are read by its tests, so they are
+//! right.
 
 use std::collections::BTreeMap;
 
-/// For each key, written `object.shape(sphere).radius` or `goal.pose`, the first value that a file gives it, as TOML.
+/// For each key, written `object.shape(sphere).radius` or `goal.pose`, the first value that a file gives it,
+/// as TOML.
 pub type Examples = BTreeMap<String, String>;
 
 /// The examples in these files.
@@ -49,7 +51,8 @@ mod tests {
     #[test]
     fn the_first_value_of_each_key_is_kept() {
         let found = of([
-            "[object.shape]\nkind = \"sphere\"\nradius = 0.03\n[[goal]]\nx = 1\n[[goal]]\nx = 2\ny = [1, 2]\n",
+            "[object.shape]\nkind = \"sphere\"\nradius = 0.03\n[[goal]]\nx = 1\n[[goal]]\nx = 2\ny = [1, \
+                2]\n",
         ]);
         let pairs: Vec<(&str, &str)> =
             found.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();

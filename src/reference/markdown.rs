@@ -17,7 +17,8 @@ pub fn code(text: &str) -> String {
     if text.is_empty() { String::new() } else { format!("`{text}`") }
 }
 
-/// The parts of a cell, one below the other; empty ones are left out. Six narrow columns would leave no room for the words.
+/// The parts of a cell, one below the other; empty ones are left out. Six narrow columns would leave no room
+/// for the words.
 pub fn lines(parts: &[String]) -> String {
     let parts: Vec<&str> = parts.iter().map(String::as_str).filter(|part| !part.is_empty()).collect();
     parts.join("<br>")
@@ -33,7 +34,8 @@ pub fn heading(level: usize, title: &str, anchor: &str) -> String {
     format!("{} {title} {{#{anchor}}}\n\n", "#".repeat(level))
 }
 
-/// Plain text in which nothing is taken for markup: `<` would begin an HTML tag outside of code, `*` and `_` emphasis, `[` a link.
+/// Plain text in which nothing is taken for markup: `<` would begin an HTML tag outside of code, `*` and `_`
+/// emphasis, `[` a link.
 pub fn prose(text: &str) -> String {
     let escaped = |(i, part): (usize, &str)| match i % 2 {
         1 => part.to_owned(),

@@ -1,4 +1,5 @@
-//! Pages of the keys of files, from their JSON schemas: a section a table, in the order in which the tables are met.
+//! Pages of the keys of files, from their JSON schemas: a section a table, in the order in which the tables
+//! are met.
 
 use super::GENERATED;
 use super::examples::Examples;
@@ -112,7 +113,8 @@ impl Chapter<'_> {
             properties.into_iter().flatten().filter(|(key, _)| given(key)).map(row).collect();
         let mut text = table(&["key", "type, range", "default", "meaning, example"], &rows);
         if schema.get("additionalProperties") == Some(&Value::Bool(true)) {
-            text += "Further keys are the plugin's settings: [plugins and settings](plugins.md) has them all.\n\n";
+            text += "Further keys are the plugin's settings: [plugins and settings](plugins.md) has them \
+                all.\n\n";
         }
         text
     }

@@ -23,7 +23,8 @@ struct Replay {
 
 #[derive(Deserialize)]
 struct Segment {
-    /// The object at each of the plan's states, and in the end once more, when it has come to rest; absent from what `replay --json` prints.
+    /// The object at each of the plan's states, and in the end once more, when it has come to rest; absent
+    /// from what `replay --json` prints.
     object: Option<Vec<Moment>>,
 }
 

@@ -64,7 +64,8 @@ fn wrong(words: &[String], help: &Help) -> Option<String> {
     unknown.map(|option| format!("it has no option `{option}`"))
 }
 
-/// The words after `regrasp` of each command of a block; of a line with `&&`, `|`, `;` or `>` each command, what follows `#` aside.
+/// The words after `regrasp` of each command of a block; of a line with `&&`, `|`, `;` or `>` each command,
+/// what follows `#` aside.
 fn commands(block: &str) -> Vec<Vec<String>> {
     let joined = block.replace("\\\n", " ");
     let mut found = Vec::new();

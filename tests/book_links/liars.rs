@@ -22,7 +22,8 @@ const GOOD: &[(&str, &str)] = &[
         "book/src/deep/two.md",
         "# Two {#second}\n\n## The `--option` of plan (x)\n\n<a id=\"by-hand\"></a>\n\n![ball](../ball.svg)\n\n```rust\n\
          {{#include ../../../code.rs:shown}}\n{{#include ../../../code.rs:1:2}}\n```\n\n\
-         ```\n$ regrasp plan ball \\\n      --set a.b=-1 --seed=3 > log   # no --such option\n```\n\n[out](https://example.org/x#y)\n\n\
+         ```\n$ regrasp plan ball \\\n      --set a.b=-1 --seed=3 > log   # no --such \
+         option\n```\n\n[out](https://example.org/x#y)\n\n\
          ```toml\n[object]\nfriction = 0.5\nshape = { kind = \"cuboid\", size = [0.04, 0.04, 0.04] }\n```\n\n\
          ```toml\n[hand]\nurdf = \"mine.urdf\"\n```\n",
     ),

@@ -1,6 +1,6 @@
-//! The book holds together: its links, anchors, pictures and included code exist, its table of contents is complete, and the commands that it
-//! shows are commands of the program, its pieces of scenarios are pieces of scenarios, and
-//! what it shows of the program's output is what the program prints.
+//! The book holds together: its links, anchors, pictures and included code exist, its table of contents is
+//! complete, and the commands that it shows are commands of the program, its pieces of scenarios are pieces
+//! of scenarios, and what it shows of the program's output is what the program prints.
 //!
 //! Each check has a liar: a small book with that one fault.
 

@@ -47,7 +47,8 @@ impl Page {
         reader.page
     }
 
-    /// mdBook's rule: letters, digits, `_` and `-` are kept, spaces become `-`, and what was there before gets a number.
+    /// mdBook's rule: letters, digits, `_` and `-` are kept, spaces become `-`, and what was there before
+    /// gets a number.
     fn add_heading(&mut self, heading: &str) {
         let kept = |c: char| match c {
             _ if c.is_alphanumeric() || c == '_' || c == '-' => Some(c),

@@ -1,4 +1,5 @@
-//! What the pages show of the program's output: a comment `<!-- output of: regrasp … -->` before a block names the command that printed it.
+//! What the pages show of the program's output: a comment `<!-- output of: regrasp … -->` before a block
+//! names the command that printed it.
 
 use crate::tree::Tree;
 use std::path::Path;
@@ -17,7 +18,8 @@ pub fn run_program(arguments: &[&str], folder: &Path) -> String {
     [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).join("\n")
 }
 
-/// Blocks with a line that their command does not print, or not in that order. Times are not compared, `...` stands for lines left out.
+/// Blocks with a line that their command does not print, or not in that order. Times are not compared, `...`
+/// stands for lines left out.
 ///
 /// The commands of a page share a folder, so that one can use what the one before has written.
 pub fn faults(tree: &Tree, run: Run<'_>) -> Vec<String> {

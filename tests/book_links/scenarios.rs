@@ -42,7 +42,8 @@ fn names_a_file(piece: &Table) -> bool {
     of(hand, "urdf") || of(hand, "file") || of(shape, "file")
 }
 
-/// Lays a piece over a scenario. A shape and a pose are replaced as a whole; a piece without a plugin's name keeps the one that is there.
+/// Lays a piece over a scenario. A shape and a pose are replaced as a whole; a piece without a plugin's name
+/// keeps the one that is there.
 fn lay(piece: &Table, whole: &mut Table) {
     for (key, value) in piece {
         match (value, whole.get_mut(key)) {

@@ -97,7 +97,8 @@ pub fn faulty() -> PathBuf {
     build("faulty", "faulty")
 }
 
-/// Makes `to` hold the files of `from`; what is the same already stays as it is, so that cargo has nothing to do.
+/// Makes `to` hold the files of `from`; what is the same already stays as it is, so that cargo has nothing to
+/// do.
 fn mirror(from: &Path, to: &Path) {
     for entry in fs::read_dir(from).expect("the crate was written") {
         let path = entry.expect("the crate was written").path();
@@ -111,8 +112,8 @@ fn mirror(from: &Path, to: &Path) {
 }
 
 fn keep(file: &Path, bytes: &[u8]) {
-    // Cargo drops from the lock file what the crate does not use: the program's own is written only where there is none, or the program's
-    // changed since.
+    // Cargo drops from the lock file what the crate does not use: the program's own is written only where
+    // there is none, or the program's changed since.
     let of = if file.ends_with("Cargo.lock") { file.with_extension("lock.of") } else { file.to_owned() };
     if fs::read(&of).is_ok_and(|found| found == bytes) && file.exists() {
         return;

@@ -120,7 +120,8 @@ fn meshes_that_cannot_be_used() {
 
 #[test]
 fn a_mesh_of_millions_of_facets() {
-    // The header of a binary STL file says how many facets follow; it is believed only as far as the file goes.
+    // The header of a binary STL file says how many facets follow; it is believed only as far as the file
+    // goes.
     let mut stl = vec![0_u8; 80];
     stl.extend(3_000_000_u32.to_le_bytes());
     stl.resize(84 + 50 * 3_000_000, 0);
@@ -143,10 +144,12 @@ fn starts_that_cannot_be() {
         &start("pose = { position = [0.0, 0.0, 0.0] }"),
         &["`start.pose`: the palm and the object overlap", "mine.toml:23"],
     );
-    let post = "[[obstacle]]\nname = \"post\"\nshape = { kind = \"sphere\", radius = 0.01 }\npose = { position = [0.02, 0.0, 0.085] }\n\n[start]";
+    let post = "[[obstacle]]\nname = \"post\"\nshape = { kind = \"sphere\", radius = 0.01 }\npose = { \
+        position = [0.02, 0.0, 0.085] }\n\n[start]";
     refused(&sphere("[start]", post), &["`start.pose`", "obstacle `post`", "overlap"]);
     let far = start(
-        "pose = { position = [0.0, 0.0, 0.6] }\ngrasp = [{ contact = [0.03, 0, 0] }, { contact = [0, 0.03, 0] }, \
+        "pose = { position = [0.0, 0.0, 0.6] }\ngrasp = [{ contact = [0.03, 0, 0] }, { contact = [0, 0.03, \
+            0] }, \
          { contact = [-0.03, 0, 0] }, { contact = [0, -0.03, 0] }]",
     );
     refused(&far, &["start.grasp[0]", "`east`", "reach"]);
@@ -169,7 +172,8 @@ fn goals_that_coincide() {
         &sphere("angle_deg = 180.0", "angle_deg = 360.0"),
         &["`goal[0]` coincides with the start", "quarters"],
     );
-    let twice = "[[goal]]\npose = { position = [0.0, 0.0, 0.085], axis = [0.0, 0.0, 1.0], angle_deg = -180.0 }\n\n[[goal]]";
+    let twice = "[[goal]]\npose = { position = [0.0, 0.0, 0.085], axis = [0.0, 0.0, 1.0], angle_deg = \
+        -180.0 }\n\n[[goal]]";
     refused(&sphere("[[goal]]", twice), &["`goal[1]` coincides with `goal[0]`"]);
 }
 

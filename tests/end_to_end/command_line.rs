@@ -94,7 +94,8 @@ fn the_readmes_scenario_works() {
     assert_eq!(said.code, 0, "{}", said.err);
 }
 
-/// A problem without a solution that is not given up soon: after an easy goal the ball is to go to the other side of a wall.
+/// A problem without a solution that is not given up soon: after an easy goal the ball is to go to the other
+/// side of a wall.
 fn endless(desk: &Desk) {
     let wall =
         "[[obstacle]]\nname = \"wall\"\nshape = { kind = \"box\", size = [0.6, 0.002, 0.6] }\n\n[start]";
@@ -104,7 +105,8 @@ fn endless(desk: &Desk) {
         ("[start]", wall),
         (
             "[[goal]]",
-            "[[goal]]\npose = { position = [0.0, -0.036, 0.085], axis = [0.0, 0.0, 1.0], angle_deg = 40.0 }\n\n[[goal]]",
+            "[[goal]]\npose = { position = [0.0, -0.036, 0.085], axis = [0.0, 0.0, 1.0], angle_deg = 40.0 \
+                }\n\n[[goal]]",
         ),
     ];
     desk.write("mine.toml", crate::desk::built_in("sphere-free", &changes));

@@ -32,7 +32,8 @@ fn every_scenario_is_solved_and_verified_the_same_on_one_thread_and_two() {
 
 #[test]
 fn samples_drawn_ahead_do_not_depend_on_the_nodes_that_are_extended_in_between() {
-    // Half of its samples anywhere, half near a node: with seed 4 the two threads once gave another plan than the one.
+    // Half of its samples anywhere, half near a node: with seed 4 the two threads once gave another plan than
+    // the one.
     for seed in 4..7 {
         let desk = Desk::new();
         for (threads, file) in [(1, "one.json"), (2, "two.json")] {

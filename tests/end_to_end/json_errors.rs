@@ -1,4 +1,5 @@
-//! Errors as JSON: one object on standard output with what is wrong in fields, the message on standard error as ever.
+//! Errors as JSON: one object on standard output with what is wrong in fields, the message on standard error
+//! as ever.
 
 use crate::desk::{Desk, Said, built_in};
 use serde_json::Value;

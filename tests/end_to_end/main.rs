@@ -1,5 +1,6 @@
 //! The real binary from outside.
 
+mod again;
 mod bad_input;
 mod command_line;
 mod compare;

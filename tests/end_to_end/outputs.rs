@@ -1,4 +1,5 @@
-//! No command destroys a file: neither one that it reads, however it is spelt, nor one that is somebody else's.
+//! No command destroys a file: neither one that it reads, however it is spelt, nor one that is somebody
+//! else's.
 
 use crate::desk::{Desk, built_in};
 use std::fs;

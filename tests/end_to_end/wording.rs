@@ -1,4 +1,5 @@
-//! What a newcomer gets wrong on the command line, and what the program says: what is wrong, what is allowed, what to do.
+//! What a newcomer gets wrong on the command line, and what the program says: what is wrong, what is allowed,
+//! what to do.
 
 use crate::desk::{Desk, Said};
 use std::process::{Command, Stdio};

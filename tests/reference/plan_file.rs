@@ -2,7 +2,7 @@
 
 use crate::{page, printed};
 use regrasp::api::{Figure, Slot, check_schema};
-use regrasp::plan::{ConeClaim, ConeRecord, ContactSurface, EdgeRecord, Extreme, Holds, ObjectRecord, Plan};
+use regrasp::plan::{ConeClaim, ConeRecord, ContactSurface, EdgeRecord, Extreme, Holds, Plan};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -84,7 +84,7 @@ fn plans() -> Vec<Value> {
 fn full(plan: &Value) -> Value {
     let mut plan: Plan = serde_json::from_value(plan.clone()).expect("a plan has the format's form");
     let twin = ContactSurface { vertices: vec![], facets: vec![], digest: String::new(), bound: 0.0 };
-    plan.object = Some(ObjectRecord { contact_surface: Some(twin) });
+    plan.object.get_or_insert_default().contact_surface = Some(twin);
     let edge = EdgeRecord { tangential: [0.5, 0.0], torsion: 0.0 };
     let cone = ConeClaim { mu: 0.5, gamma: 0.0 };
     plan.claims.contact.cones = vec![ConeRecord::Elliptic(cone), ConeRecord::Polyhedral(vec![edge])];

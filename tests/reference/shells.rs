@@ -37,7 +37,8 @@ fn every_shell_has_completions_of_every_command() {
 fn offered(folder: &Path, words: &str) -> Vec<String> {
     let script = format!(
         "set -eu; source completions.bash; COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); \
-         _regrasp regrasp \"${{COMP_WORDS[$COMP_CWORD]}}\" \"${{COMP_WORDS[$((COMP_CWORD - 1))]}}\"; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+         _regrasp regrasp \"${{COMP_WORDS[$COMP_CWORD]}}\" \"${{COMP_WORDS[$((COMP_CWORD - 1))]}}\"; printf \
+         '%s\\n' \"${{COMPREPLY[@]}}\""
     );
     let output = std::process::Command::new("bash")
         .args(["--norc", "--noprofile", "-c", &script])

@@ -1,4 +1,5 @@
-//! What a reader does: `regrasp new-plugin`, the chapter's code in the place of the template's, build, load, plan.
+//! What a reader does: `regrasp new-plugin`, the chapter's code in the place of the template's, build, load,
+//! plan.
 
 use crate::TUTORIALS;
 use crate::workshop::{edited, regrasp};

@@ -1,4 +1,5 @@
-//! The plugins that the book's tutorials build: each plans, and whoever follows a chapter gets what it promises.
+//! The plugins that the book's tutorials build: each plans, and whoever follows a chapter gets what it
+//! promises.
 
 mod chapters;
 mod follow;

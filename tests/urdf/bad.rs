@@ -86,7 +86,8 @@ fn missing_limits_are_no_silent_default() {
 fn loops_and_two_roots_are_refused() {
     let joint = |parent: &str, child: &str| {
         format!(
-            "<joint name=\"closing\" type=\"fixed\"><parent link=\"{parent}\"/><child link=\"{child}\"/></joint></robot>"
+            "<joint name=\"closing\" type=\"fixed\"><parent link=\"{parent}\"/><child \
+                link=\"{child}\"/></joint></robot>"
         )
     };
     says(&refusal("</robot>", &joint("f0_tip", "palm")), &["loop", "closing"]);
@@ -170,7 +171,8 @@ fn meshes_in_millimetres_are_recognised() {
 #[test]
 fn files_of_macros_are_refused_with_what_to_do() {
     let desk = Desk::new();
-    let macros = "<robot name=\"h\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\"><xacro:include filename=\"a.xacro\"/></robot>";
+    let macros = "<robot name=\"h\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\"><xacro:include \
+        filename=\"a.xacro\"/></robot>";
     desk.write("hand.urdf", macros);
     says(&fails(&desk, "hand hand.urdf"), &["xacro hand.urdf.xacro > hand.urdf", "hand.urdf:1"]);
 }
@@ -215,7 +217,8 @@ fn a_scenario_names_the_urdf_and_its_line() {
     desk.write("bad.urdf", good().replacen(LIMIT, "", 1));
     let scenario = |hand: &str| {
         format!(
-            "[hand]\n{hand}\n[object]\nfriction = 0.8\nshape = {{ kind = \"sphere\", radius = 0.03 }}\n[start]\npose = {{ position = [0.0, 0.0, 0.085] }}\n\
+            "[hand]\n{hand}\n[object]\nfriction = 0.8\nshape = {{ kind = \"sphere\", radius = 0.03 \
+                }}\n[start]\npose = {{ position = [0.0, 0.0, 0.085] }}\n\
              [[goal]]\npose = {{ position = [0.0, 0.0, 0.09] }}\n"
         )
     };

@@ -71,7 +71,8 @@ fn finger(text: &mut String, pattern: Pattern, finger: usize) {
     }
     writeln!(
         text,
-        "<link name=\"f{finger}_tip\"/><joint name=\"f{finger}_end\" type=\"fixed\"><parent link=\"{before}\"/>\
+        "<link name=\"f{finger}_tip\"/><joint name=\"f{finger}_end\" type=\"fixed\"><parent \
+            link=\"{before}\"/>\
          <child link=\"f{finger}_tip\"/><origin xyz=\"0 0 {height}\"/></joint>"
     )
     .unwrap();
@@ -92,7 +93,8 @@ fn shape(kind: &str, length: f64) -> String {
 }
 
 /// A three-sided prism from z = 0 to 1, with one corner too many and no lid: its convex hull is what counts.
-pub const WEDGE: &str = "v 1 0 0\nv -0.5 0.8 0\nv -0.5 -0.8 0\nv 1 0 1\nv -0.5 0.8 1\nv -0.5 -0.8 1\nv 0 0 0.5\n\
+pub const WEDGE: &str = "v 1 0 0\nv -0.5 0.8 0\nv -0.5 -0.8 0\nv 1 0 1\nv -0.5 0.8 1\nv -0.5 -0.8 1\nv 0 0 \
+    0.5\n\
     f 1 2 5\nf 1 5 4\nf 2 3 6\nf 2 6 5\nf 3 1 4\nf 3 4 6\nf 1 3 7\n";
 
 fn link(text: &mut String, name: &str, collision: &str) {
@@ -112,8 +114,10 @@ fn joint(
         driver.map(|driver| format!("<mimic joint=\"{driver}\" multiplier=\"0.8\" offset=\"0.02\"/>"));
     writeln!(
         text,
-        "<joint name=\"{name}\" type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{child}\"/><origin {origin}/>\
-         <axis xyz=\"{axis}\"/><limit lower=\"{lower}\" upper=\"{upper}\" velocity=\"4\" effort=\"1\"/>{}</joint>",
+        "<joint name=\"{name}\" type=\"revolute\"><parent link=\"{parent}\"/><child \
+            link=\"{child}\"/><origin {origin}/>\
+         <axis xyz=\"{axis}\"/><limit lower=\"{lower}\" upper=\"{upper}\" velocity=\"4\" \
+         effort=\"1\"/>{}</joint>",
         mimic.unwrap_or_default()
     )
     .unwrap();

@@ -1,4 +1,5 @@
-//! Hands of three to five fingers with three to five joints that nobody has seen before plan a motion that verifies.
+//! Hands of three to five fingers with three to five joints that nobody has seen before plan a motion that
+//! verifies.
 
 use crate::desk::Desk;
 use crate::generator::{Pattern, WEDGE, hand};
@@ -10,7 +11,8 @@ fn scenario(fingers: usize) -> String {
     format!(
         "[hand]\nurdf = \"urdf/hand.urdf\"\nfingertip_radius = 0.01\n\
          [object]\nfriction = 0.8\nshape = {{ kind = \"sphere\", radius = 0.03 }}\n\
-         [start]\npose = {{ {pose} }}\n[[goal]]\npose = {{ {pose}, axis = [0.0, 0.0, 1.0], angle_deg = 40.0 }}\n{}",
+         [start]\npose = {{ {pose} }}\n[[goal]]\npose = {{ {pose}, axis = [0.0, 0.0, 1.0], angle_deg = 40.0 \
+         }}\n{}",
         if fingers == 3 { soft } else { "" }
     )
 }
@@ -116,7 +118,8 @@ fn the_hand_file_that_is_written_plans_as_the_urdf_does() {
 
 #[test]
 fn bodies_that_always_touch_are_found_and_excluded() {
-    // A block at the root of one finger, and a large ball about the root of the next, fixed to its first link: no posture keeps them apart.
+    // A block at the root of one finger, and a large ball about the root of the next, fixed to its first
+    // link: no posture keeps them apart.
     let desk = desk(Pattern { fingers: 4, joints: 3, link: "capsule", driven: false });
     let text = desk.read("urdf/hand.urdf");
     let with = |text: String, finger: usize, shape: &str| {
@@ -137,7 +140,8 @@ fn bodies_that_always_touch_are_found_and_excluded() {
 #[test]
 fn what_is_fixed_to_a_link_halfway_is_no_finger() {
     let desk = desk(Pattern { fingers: 4, joints: 3, link: "capsule", driven: false });
-    let sensor = "<link name=\"sensor_tip\"/><joint name=\"sensor_mount\" type=\"fixed\"><parent link=\"f1_link0\"/>\
+    let sensor = "<link name=\"sensor_tip\"/><joint name=\"sensor_mount\" type=\"fixed\"><parent \
+        link=\"f1_link0\"/>\
         <child link=\"sensor_tip\"/></joint></robot>";
     desk.write("urdf/hand.urdf", desk.read("urdf/hand.urdf").replacen("</robot>", sensor, 1));
     let said = desk.run("hand urdf/hand.urdf --fingertip-radius 0.01 --json");
@@ -155,8 +159,8 @@ fn joints_of_no_finger_are_held_and_said() {
     }
 }
 
-/// The generated hand with plain boxes to the middle of every fingertip, which is a ball of 8 mm; `seen` are the visual shapes of a last link
-/// and of a tip.
+/// The generated hand with plain boxes to the middle of every fingertip, which is a ball of 8 mm; `seen` are
+/// the visual shapes of a last link and of a tip.
 fn boxed(seen: (&str, &str)) -> Desk {
     let desk = desk(Pattern { fingers: 4, joints: 3, link: "box", driven: false });
     let mut text = desk.read("urdf/hand.urdf");
@@ -173,7 +177,8 @@ fn boxed(seen: (&str, &str)) -> Desk {
     desk
 }
 
-/// A visual box of a last link up to this height (m), and a visual cylinder of a tip from `below` under its ball's centre to its end.
+/// A visual box of a last link up to this height (m), and a visual cylinder of a tip from `below` under its
+/// ball's centre to its end.
 fn seen(height: f64, below: f64, radius: f64) -> (String, String) {
     let link = format!(
         "<origin xyz=\"0 0 {}\"/><geometry><box size=\"0.014 0.014 {height}\"/></geometry>",
@@ -222,7 +227,8 @@ fn what_is_seen_of_a_tip_must_fit_its_ball_and_its_link() {
 #[test]
 fn ends_that_can_be_no_finger_are_left_out_of_a_guess() {
     let desk = desk(Pattern { fingers: 4, joints: 3, link: "capsule", driven: false });
-    let flap = "<link name=\"flap\"/><joint name=\"hinge\" type=\"revolute\"><parent link=\"palm\"/><child link=\"flap\"/>\
+    let flap = "<link name=\"flap\"/><joint name=\"hinge\" type=\"revolute\"><parent link=\"palm\"/><child \
+        link=\"flap\"/>\
         <axis xyz=\"0 0 1\"/><limit lower=\"0\" upper=\"1\" velocity=\"1\" effort=\"1\"/></joint></robot>";
     desk.write("urdf/hand.urdf", desk.read("urdf/hand.urdf").replacen("</robot>", flap, 1));
     let said = desk.run("hand urdf/hand.urdf --fingertip-radius 0.01");
@@ -247,7 +253,8 @@ fn two_hands() -> String {
             text = text.replace(name, &format!("{name}{side}_"));
         }
         let arm = format!(
-            "<joint name=\"{side}_arm\" type=\"revolute\"><parent link=\"body\"/><child link=\"{side}_palm\"/><axis xyz=\"0 0 1\"/>\
+            "<joint name=\"{side}_arm\" type=\"revolute\"><parent link=\"body\"/><child \
+                link=\"{side}_palm\"/><axis xyz=\"0 0 1\"/>\
              <limit lower=\"-1\" upper=\"1\" velocity=\"1\" effort=\"1\"/></joint>"
         );
         text + &arm
@@ -330,7 +337,8 @@ fn a_cylinder_with_a_ball_at_each_end_is_a_capsule() {
         assert!(rods.contains(&capsule));
         let ball = |z: f64| {
             format!(
-                "<collision><origin xyz=\"0 0 {z}\"/><geometry><sphere radius=\"0.007\"/></geometry></collision>"
+                "<collision><origin xyz=\"0 0 {z}\"/><geometry><sphere \
+                    radius=\"0.007\"/></geometry></collision>"
             )
         };
         let cylinder = capsule.replace("<capsule", "<cylinder") + &ball(length) + &ball(0.0);

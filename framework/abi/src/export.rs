@@ -24,12 +24,13 @@ pub const EXPORT_NAME: &str = "regrasp_plugins";
 /// regrasp_abi::export_plugins!(my_plugin::ENTRY);
 /// ```
 ///
-/// Each argument is the path of a `const` of type [`Entry`]. The expansion is one exported function, and a section of the file with the
-/// [`crate::FINGERPRINT`] and the plugins' ids, which the host reads before it loads anything. Every function of an entry and every object that it
-/// builds is put behind a guard that turns panics into errors ([`regrasp_api::CallError::Panicked`]).
+/// Each argument is the path of a `const` of type [`Entry`]. The expansion is one exported function, and a
+/// section of the file with the [`crate::FINGERPRINT`] and the plugins' ids, which the host reads before it
+/// loads anything. Every function of an entry and every object that it builds is put behind a guard that
+/// turns panics into errors ([`regrasp_api::CallError::Panicked`]).
 ///
-/// Use it once, in a crate of its own that is a `cdylib` and nothing else: two such crates linked into one program would both define
-/// the exported function.
+/// Use it once, in a crate of its own that is a `cdylib` and nothing else: two such crates linked into one
+/// program would both define the exported function.
 #[macro_export]
 macro_rules! export_plugins {
     ($($entry:path),+ $(,)?) => {
@@ -43,7 +44,8 @@ macro_rules! export_plugins {
                 "\n",
             ];
 
-            // SAFETY (of the attributes): no other section of these names exists, and the host takes the section for text alone.
+            // SAFETY (of the attributes): no other section of these names exists, and the host takes the
+            // section for text alone.
             #[used]
             #[cfg_attr(target_vendor = "apple", unsafe(link_section = "__DATA,__regrasp"))]
             #[cfg_attr(not(target_vendor = "apple"), unsafe(link_section = ".regrasp"))]

@@ -27,10 +27,11 @@ pub const CONTRACT_KEY: &str = "contract";
 
 /// The fingerprint of this build: lines `key: value`, the contract's version first.
 ///
-/// Rust promises no layout of types, vtables or calls between compilers, and a changed field in `regrasp-api` changes
-/// layouts under the same compiler; so all of it is compared: contract version, hashes of the sources of `regrasp-api` and of this crate, features, nalgebra's
-/// version, compiler and commit, target, CPU features, panic strategy. Optimisation and debug assertions change no layout and
-/// are left out: a plugin built for release works in a host built for debugging.
+/// Rust promises no layout of types, vtables or calls between compilers, and a changed field in `regrasp-api`
+/// changes layouts under the same compiler; so all of it is compared: contract version, hashes of the sources
+/// of `regrasp-api` and of this crate, features, nalgebra's version, compiler and commit, target, CPU
+/// features, panic strategy. Optimisation and debug assertions change no layout and are left out: a plugin
+/// built for release works in a host built for debugging.
 pub const FINGERPRINT: &str = concat!(
     "contract: ",
     contract_version!(),
@@ -41,7 +42,8 @@ pub const FINGERPRINT: &str = concat!(
     "\n"
 );
 
-/// The section of a plugin library that holds the fingerprint, as the `object` crate names it on every platform.
+/// The section of a plugin library that holds the fingerprint, as the `object` crate names it on every
+/// platform.
 pub const SECTION: &str = ".regrasp";
 
 /// How many bytes `parts` have together.

@@ -1,10 +1,11 @@
 //! The guard: a plugin object whose panics become errors.
 //!
-//! A panic cannot cross from one Rust binary into another (the process is aborted), so a plugin library compiles the guard *into itself*;
-//! the host puts the same guard round the built-in plugins. Calls that return a `Result` give [`CallError::Panicked`]. Those that return
-//! plain values give a harmless one (a cone without friction, a contact on a sharp edge, infinitely far away) and report the panic as the
-//! thread's fault ([`regrasp_api::report_fault`]): [`regrasp_api::Context::proceed`] then ends the call, and the planner takes the fault in place of
-//! the call's result.
+//! A panic cannot cross from one Rust binary into another (the process is aborted), so a plugin library
+//! compiles the guard *into itself*; the host puts the same guard round the built-in plugins. Calls that
+//! return a `Result` give [`CallError::Panicked`]. Those that return plain values give a harmless one (a cone
+//! without friction, a contact on a sharp edge, infinitely far away) and report the panic as the thread's
+//! fault ([`regrasp_api::report_fault`]): [`regrasp_api::Context::proceed`] then ends the call, and the
+//! planner takes the fault in place of the call's result.
 
 use regrasp_api::{BuildError, Built, CallError, SettingsError};
 use std::any::Any;
@@ -50,15 +51,16 @@ impl<T: ?Sized> Guard<T> {
 impl<T: ?Sized> Drop for Guard<T> {
     fn drop(&mut self) {
         let object = self.object.take();
-        // Nothing is computed with the object any more: a panic here spoils no result, and must not be taken for a fault of the thread's
-        // next call. The panic's message has been printed already.
+        // Nothing is computed with the object any more: a panic here spoils no result, and must not be taken
+        // for a fault of the thread's next call. The panic's message has been printed already.
         let _ = caught(self.plugin, || drop(object));
     }
 }
 
 /// Runs `call`; a panic becomes [`CallError::Panicked`].
 pub(crate) fn caught<R>(plugin: &str, call: impl FnOnce() -> R) -> Result<R, CallError> {
-    // What a panic may have left half changed (random stream, counts, path) is thrown away with the failed call.
+    // What a panic may have left half changed (random stream, counts, path) is thrown away with the failed
+    // call.
     catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
         let message = message(payload.as_ref());
         // The payload may be any type of the plugin's, whose own end may panic.

@@ -1,7 +1,8 @@
-//! How plugin objects cross the border of a library that is loaded at run time: the export macro, the fingerprint, the guards.
+//! How plugin objects cross the border of a library that is loaded at run time: the export macro, the
+//! fingerprint, the guards.
 //!
-//! A plugin library says [`export_plugins!`]; the host compares its [`FINGERPRINT`] before it loads anything. Whatever is called across
-//! the border stands behind a guard that turns panics into errors.
+//! A plugin library says [`export_plugins!`]; the host compares its [`FINGERPRINT`] before it loads anything.
+//! Whatever is called across the border stands behind a guard that turns panics into errors.
 
 mod entry;
 mod export;

@@ -4,12 +4,13 @@ use crate::{FingerIndex, FingerJoints, FingerSet, PerFinger, Pose, Vec3};
 
 /// A place where a fingertip touches, or could touch, the object.
 ///
-/// Contacts live on the *offset surface* (object ⊕ fingertip ball): the fingertip's centre is `p_OC + radius · n_O`. On a
-/// facet `n_O` is the facet's normal; on a convex edge or vertex it is any direction between those of the facets that
-/// meet there.
+/// Contacts live on the *offset surface* (object ⊕ fingertip ball): the fingertip's centre is `p_OC + radius
+/// · n_O`. On a facet `n_O` is the facet's normal; on a convex edge or vertex it is any direction between
+/// those of the facets that meet there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// The facet that holds the point (one of several on an edge or vertex), or another coordinate of the surface plugin.
+    /// The facet that holds the point (one of several on an edge or vertex), or another coordinate of the
+    /// surface plugin.
     pub facet: u32,
     /// The contact point in the object's frame (m).
     pub p_OC: Vec3,
@@ -41,7 +42,8 @@ impl Configuration {
         self.contacts.iter().filter(|(_, contact)| contact.is_some()).map(|(finger, _)| finger).collect()
     }
 
-    /// Where the fingertip centre of `finger` must be for its contact, in the hand's frame (m); `None` if it is free.
+    /// Where the fingertip centre of `finger` must be for its contact, in the hand's frame (m); `None` if it
+    /// is free.
     pub fn contact_tip_center(&self, finger: FingerIndex, radius: f64) -> Option<Vec3> {
         let contact = self.contacts[finger]?;
         Some(self.X_HO * nalgebra::Point3::from(contact.tip_center(radius))).map(|p| p.coords)

@@ -3,7 +3,8 @@
 use crate::Departure;
 use thiserror::Error;
 
-/// A call has no answer. "No" (unstable, no path, no sample) is not an error but an answer with its [`crate::Reason`].
+/// A call has no answer. "No" (unstable, no path, no sample) is not an error but an answer with its
+/// [`crate::Reason`].
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CallError {

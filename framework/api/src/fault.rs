@@ -5,12 +5,13 @@ use std::cell::RefCell;
 use std::sync::OnceLock;
 
 thread_local! {
-    // One a thread, because an expensive call runs on one thread from begin to end: the fault belongs to that call, and a result that was
-    // computed ahead and thrown away takes its fault with it.
+    // One a thread, because an expensive call runs on one thread from begin to end: the fault belongs to that
+    // call, and a result that was computed ahead and thrown away takes its fault with it.
     static FAULT: RefCell<Option<CallError>> = const { RefCell::new(None) };
 }
 
-/// The host's memory of faults, as a plugin library is given it when it is loaded: the library's own copy is another one.
+/// The host's memory of faults, as a plugin library is given it when it is loaded: the library's own copy is
+/// another one.
 #[derive(Clone, Copy)]
 #[doc(hidden)]
 pub struct Faults {

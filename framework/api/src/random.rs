@@ -1,8 +1,10 @@
 //! The random stream that a call is handed: seeded, portable, cheap to fork.
 
-/// xoshiro256++ (Blackman & Vigna, "Scrambled linear pseudorandom number generators", ACM TOMS 2021), seeded by SplitMix64.
+/// xoshiro256++ (Blackman & Vigna, "Scrambled linear pseudorandom number generators", ACM TOMS 2021), seeded
+/// by SplitMix64.
 ///
-/// A stream is a pure function of its key, so that an expensive call gives the same answer on whichever thread it runs.
+/// A stream is a pure function of its key, so that an expensive call gives the same answer on whichever
+/// thread it runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Random {
     state: [u64; 4],

@@ -1,4 +1,5 @@
-//! What an error says, as data: for programs that read it, and for those who look for the line of a file that it belongs to.
+//! What an error says, as data: for programs that read it, and for those who look for the line of a file that
+//! it belongs to.
 
 use crate::{BuildError, CallError, Departure, Fault, SettingsError, did_you_mean};
 use serde::Serialize;

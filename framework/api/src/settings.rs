@@ -7,7 +7,8 @@ use serde_json::Value;
 /// A plugin's settings: a plain struct with `#[serde(deny_unknown_fields, default)]`.
 ///
 /// A number's range stands in its schema, `#[schemars(range(min = 0.1, max = 1.0))]`, and its unit beside it,
-/// `extend("x-unit" = "m")` ("1" where it has none). Checks, messages, tables and the book take both from there.
+/// `extend("x-unit" = "m")` ("1" where it has none). Checks, messages, tables and the book take both from
+/// there.
 pub trait Settings: Serialize + DeserializeOwned + schemars::JsonSchema + Default {
     /// Checks what the schema cannot say: how values depend on one another.
     fn check_further(&self) -> Result<(), SettingsError> {

@@ -1,9 +1,5 @@
 //! The roles and the slots that plugins fill: one row each, from which everything else about them is derived.
 
-use crate::{
-    Built, ClosedChainSampler, ContactModel, Entry, GraphStrategy, LocalPlanner, Parts, StabilityTest,
-    SurfaceParam,
-};
 use serde::{Deserialize, Serialize};
 
 /// Hands the table of the roles to the macro `$then`: `[variant, name in code, trait] (id, what it answers)`.
@@ -27,10 +23,11 @@ macro_rules! with_roles {
     };
 }
 
-/// Hands the table of the slots to the macro `$then`: `[variant, field, trait] (role, id, plugin by default, what it is for)`.
+/// Hands the table of the slots to the macro `$then`: `[variant, field, trait] (role, id, plugin by default,
+/// what it is for)`.
 ///
-/// The defaults are the paper's: its section IV, "Planning algorithm", names rolling transfers, the random loop generator, RRT for
-/// regrasps and the biased α.
+/// The defaults are the paper's: its section IV, "Planning algorithm", names rolling transfers, the random
+/// loop generator, RRT for regrasps and the biased α.
 #[macro_export]
 macro_rules! with_slots {
     ($then:ident) => {
@@ -74,21 +71,6 @@ macro_rules! roles {
                 }
             }
         }
-
-        /// How a plugin is built from JSON settings and parts: one way for each role.
-        #[derive(Clone, Copy)]
-        pub enum Build {
-            $(#[doc = $doc] $role(fn(&str, &Parts<'_>) -> Built<dyn $trait>),)+
-        }
-
-        impl Entry {
-            /// The role, as the builder says.
-            pub fn role(&self) -> Role {
-                match self.build {
-                    $(Build::$role(_) => Role::$role,)+
-                }
-            }
-        }
     };
 }
 with_roles!(roles);
@@ -125,12 +107,6 @@ macro_rules! slots {
                     $(Self::$slot => $default,)+
                 }
             }
-        }
-
-        /// The plugin in each slot.
-        #[derive(Clone, Copy)]
-        pub struct Plugins<'a> {
-            $(#[doc = $doc] pub $field: &'a dyn $trait,)+
         }
     };
 }

@@ -1,7 +1,7 @@
 //! Vectors, rotations and poses, in monogram notation.
 //!
-//! `X_HO` is the pose of frame O in frame H, `p_OC` the position of C's origin in O, `n_O` a unit vector given in O.
-//! Products read by matching letters: `X_HC = X_HO * X_OC`. Lengths are metres, angles radians.
+//! `X_HO` is the pose of frame O in frame H, `p_OC` the position of C's origin in O, `n_O` a unit vector
+//! given in O. Products read by matching letters: `X_HC = X_HO * X_OC`. Lengths are metres, angles radians.
 
 use nalgebra::{Isometry3, Matrix3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
@@ -14,10 +14,11 @@ pub type Rotation = UnitQuaternion<f64>;
 /// A rigid motion: a rotation followed by a translation (m).
 pub type Pose = Isometry3<f64>;
 
-/// The pose a fraction `s` in [0, 1] of the way from `X_0` to `X_1`: position linear, orientation by the shorter arc.
+/// The pose a fraction `s` in [0, 1] of the way from `X_0` to `X_1`: position linear, orientation by the
+/// shorter arc.
 ///
-/// This is the motion that a plan *means* between two of its states. Never panics: where the two orientations differ
-/// by exactly π the arc follows the quaternions as they are given.
+/// This is the motion that a plan *means* between two of its states. Never panics: where the two orientations
+/// differ by exactly π the arc follows the quaternions as they are given.
 pub fn interpolate(X_0: &Pose, X_1: &Pose, s: f64) -> Pose {
     let p = X_0.translation.vector.lerp(&X_1.translation.vector, s);
     Pose::from_parts(Translation3::from(p), slerp(&X_0.rotation, &X_1.rotation, s))

@@ -7,7 +7,8 @@ use std::cell::Cell;
 use std::sync::{Mutex, PoisonError};
 
 thread_local! {
-    // Whether this thread repeats a call or checks a law: what is called then was audited before, or is not the plugin's doing.
+    // Whether this thread repeats a call or checks a law: what is called then was audited before, or is not
+    // the plugin's doing.
     static RESTING: Cell<bool> = const { Cell::new(false) };
 }
 

@@ -2,7 +2,8 @@
 
 use regrasp_api::{Mesh, Vec3};
 
-/// The closest point of a surface, with the facet that holds it, and the signed distance (m; negative inside).
+/// The closest point of a surface, with the facet that holds it, and the signed distance (m; negative
+/// inside).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
     /// The facet; 0 for closed forms.
@@ -13,7 +14,8 @@ pub struct Closest {
     pub distance: f64,
 }
 
-/// The closest point of the mesh to `p` (m, in the mesh's frame), the first of several; the sign by the normals that meet there.
+/// The closest point of the mesh to `p` (m, in the mesh's frame), the first of several; the sign by the
+/// normals that meet there.
 pub fn closest_on_mesh(mesh: &Mesh, p: &Vec3) -> Closest {
     let mut best = Closest { facet: 0, point: Vec3::zeros(), distance: f64::INFINITY };
     for facet in 0..mesh.facets().len() as u32 {
@@ -37,8 +39,9 @@ fn plane_distance(mesh: &Mesh, facet: u32, p: &Vec3) -> f64 {
     mesh.normal(facet).dot(&(p - corner)).abs()
 }
 
-/// The normals of the facets that meet at a point of the surface, weighted with their angles there: its sign tells inside from outside
-/// (Bærentzen & Aanæs, "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 2005).
+/// The normals of the facets that meet at a point of the surface, weighted with their angles there: its sign
+/// tells inside from outside (Bærentzen & Aanæs, "Signed distance computation using the angle weighted
+/// pseudonormal", IEEE TVCG 2005).
 fn pseudonormal(mesh: &Mesh, point: &Vec3) -> Vec3 {
     let mut sum = Vec3::zeros();
     for facet in 0..mesh.facets().len() as u32 {
@@ -59,7 +62,8 @@ fn pseudonormal(mesh: &Mesh, point: &Vec3) -> Vec3 {
 /// Points closer than this (m) are one.
 const SAME: f64 = 1e-10;
 
-/// The closest point (m) of a facet to `p`: the foot on its plane if it lies inside, otherwise the best of the three edges' points.
+/// The closest point (m) of a facet to `p`: the foot on its plane if it lies inside, otherwise the best of
+/// the three edges' points.
 pub fn closest_on_facet(mesh: &Mesh, facet: u32, p: &Vec3) -> Vec3 {
     let (corners, n) = (mesh.corners(facet), mesh.normal(facet));
     let foot = p - n * n.dot(&(p - corners[0]));

@@ -13,6 +13,7 @@
 //! with the built-in plugins. [`checks`] lists every check of a role with the reason for it; the names are stable. Each check has a *liar*
 //! among the kit's own tests: a plugin with one deliberate fault, which that check and no other catches.
 
+mod calls;
 mod entry;
 pub mod fixtures;
 mod law;

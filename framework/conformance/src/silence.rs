@@ -12,12 +12,14 @@ const MARK: &str = "\n<<<regrasp-conformance>>>\n";
 
 /// Panics if a registered plugin prints anything while it goes through its checks.
 ///
-/// `test` is the path of the calling test, `concat!(module_path!(), "::name")`: the child process runs that test alone.
+/// `test` is the path of the calling test, `concat!(module_path!(), "::name")`: the child process runs that
+/// test alone.
 pub fn registered_are_silent(test: &str) {
     assert_silent(test, &crate::registered());
 }
 
-/// Panics if one of `entries` prints anything, to standard output or standard error, while it goes through its checks.
+/// Panics if one of `entries` prints anything, to standard output or standard error, while it goes through
+/// its checks.
 pub fn assert_silent(test: &str, entries: &[&Entry]) {
     if std::env::var_os(CHILD).is_some() {
         mark();

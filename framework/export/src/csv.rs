@@ -15,6 +15,7 @@ pub(crate) fn files(scene: &Scene<'_>, stem: &str) -> Vec<File> {
 fn head(scene: &Scene<'_>) -> Vec<String> {
     let mut head: Vec<String> = ["time", "segment", "kind", "moving_finger"].map(String::from).into();
     head.extend(scene.names.joints.iter().flatten().map(|joint| format!("joint.{joint}")));
+    head.extend(scene.names.joints.iter().flatten().map(|joint| format!("velocity.{joint}")));
     head.extend(vector("object.position", &["x", "y", "z"]));
     head.extend(vector("object.orientation", &["w", "x", "y", "z"]));
     for finger in &scene.description().finger {
@@ -40,6 +41,11 @@ fn cells(scene: &Scene<'_>, row: &Row<'_>) -> Vec<String> {
         row.moving().map_or(String::new(), |finger| scene.description().finger[finger.index()].name.clone());
     let mut cells = vec![row.time.to_string(), row.segment.to_string(), row.kind_name().into(), moving];
     cells.extend(row.q.joints.iter().flat_map(|(_, joints)| joints.iter().map(number).collect::<Vec<_>>()));
+    let joints = scene.names.joints.iter().map(Vec::len).sum();
+    match row.velocities() {
+        Some(velocities) => cells.extend(velocities.iter().map(number)),
+        None => cells.extend(vec![String::new(); joints]),
+    }
     let (position, orientation) = row.object();
     cells.extend(position.iter().chain(&orientation).map(number));
     for finger in scene.fingers() {

@@ -32,8 +32,8 @@ pub struct Grasps<'a> {
 }
 
 impl Grasps<'_> {
-    /// As JSON: `grasps` is a list of `{component, margin, object: {position, orientation [w,x,y,z]}, joints: [[…] per finger], contacts: [null |
-    /// {point_O, normal_O} per finger]}`; m, rad, the object's pose in H.
+    /// As JSON: `grasps` is a list of `{component, margin, object: {position, orientation [w,x,y,z]}, joints:
+    /// [[…] per finger], contacts: [null | {point_O, normal_O} per finger]}`; m, rad, the object's pose in H.
     pub fn json(&self, name: &str) -> File {
         let grasps: Vec<Value> = self.grasps.iter().map(grasp).collect();
         let document = json!({
@@ -49,8 +49,9 @@ impl Grasps<'_> {
         File { name: name.into(), bytes: format!("{document:#}\n").into_bytes() }
     }
 
-    /// As NumPy arrays, for G grasps, F fingers and J joints: `component` (G), `margin` (G), `object_position` (G, 3), `object_orientation`
-    /// (G, 4: w, x, y, z), `joints` (G, J), `contact_point_O` and `contact_normal_O` (G, F, 3; NaN for free fingers), `joint_names`, `finger_names`.
+    /// As NumPy arrays, for G grasps, F fingers and J joints: `component` (G), `margin` (G),
+    /// `object_position` (G, 3), `object_orientation` (G, 4: w, x, y, z), `joints` (G, J), `contact_point_O`
+    /// and `contact_normal_O` (G, F, 3; NaN for free fingers), `joint_names`, `finger_names`.
     pub fn npz(&self, name: &str) -> Result<File, ExportError> {
         let mut archive = Archive::new();
         let names = crate::names::Names::new(self.hand, &[]);

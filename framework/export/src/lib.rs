@@ -6,6 +6,7 @@
 
 mod csv;
 mod error;
+mod files;
 mod forces;
 mod gltf;
 mod grasps;

@@ -1,8 +1,9 @@
 //! A MuJoCo model of hand, object and obstacles, with the trajectory of its motors.
 //!
-//! Links are weightless (`gravcomp`), as plans take them to be, and have a nominal mass. Links do not collide with one another: plans are free of that. The
-//! object is a primitive where it is one and MuJoCo has it; else its mesh, of which MuJoCo takes the convex hull; else, where it is not
-//! convex, one thin wedge below each facet, so that its surface is the plan's.
+//! Links are weightless (`gravcomp`), as plans take them to be, and have a nominal mass. Links do not collide
+//! with one another: plans are free of that. The object is a primitive where it is one and MuJoCo has it;
+//! else its mesh, of which MuJoCo takes the convex hull; else, where it is not convex, one thin wedge below
+//! each facet, so that its surface is the plan's.
 
 use crate::names::{OBJECT, ROOT, file_stem};
 use crate::solid::{Piece, Solid};
@@ -23,7 +24,10 @@ pub(crate) fn files(scene: &Scene<'_>, stem: &str) -> Vec<File> {
     let mut xml = Xml::new();
     let name = scene.plan.scenario.name.clone();
     xml.element("mujoco", &[("model", name)], |xml| {
-        xml.comment("The world's frame is the plan's frame H. Masses of links are nominal and their weight is compensated.");
+        xml.comment(
+            "The world's frame is the plan's frame H. Masses of links are nominal and their weight \
+            is compensated.",
+        );
         xml.empty("compiler", &[("angle", "radian".into()), ("autolimits", "true".into())]);
         options(xml, scene);
         assets.write(xml);
@@ -41,7 +45,8 @@ pub(crate) fn files(scene: &Scene<'_>, stem: &str) -> Vec<File> {
 }
 
 fn options(xml: &mut Xml, scene: &Scene<'_>) {
-    // Elliptic cones are the plan's own; a high ratio of the constraints' impedances keeps held objects from creeping out of the grasp.
+    // Elliptic cones are the plan's own; a high ratio of the constraints' impedances keeps held objects from
+    // creeping out of the grasp.
     let mut option: Attributes = vec![
         ("timestep", "0.0005".into()),
         ("integrator", "implicitfast".into()),
@@ -50,12 +55,14 @@ fn options(xml: &mut Xml, scene: &Scene<'_>) {
         ("gravity", numbers(&scene.plan.scenario.problem.gravity)),
     ];
     if has_torsion(scene) {
-        // MuJoCo softens torsional friction by (mu/gamma)², some 40,000 here: a pinched object would turn out of the fingers. These steps undo that.
+        // MuJoCo softens torsional friction by (mu/gamma)², some 40,000 here: a pinched object would turn out
+        // of the fingers. These steps undo that.
         option.push(("noslip_iterations", "5".into()));
     }
     xml.empty("option", &option);
     xml.empty("size", &[("memory", "200M".into())]);
-    // Stiff contacts: by MuJoCo's own defaults fingertips sink in by half a millimetre, and grasps turn by as much and slip.
+    // Stiff contacts: by MuJoCo's own defaults fingertips sink in by half a millimetre, and grasps turn by as
+    // much and slip.
     xml.element("default", &[], |xml| {
         xml.empty("geom", &[("solref", "0.002 1".into()), ("solimp", "0.95 0.99 0.0001 0.5 2".into())]);
     });
@@ -231,7 +238,8 @@ impl Bodies {
     }
 }
 
-/// What collides with what: `contype` and `conaffinity` of hand and obstacles, which meet the object alone ...
+/// What collides with what: `contype` and `conaffinity` of hand and obstacles, which meet the object alone
+/// ...
 const HAND: [&str; 2] = ["1", "2"];
 /// ... and of the object.
 const OBJECT_SIDE: [&str; 2] = ["2", "1"];
@@ -240,7 +248,8 @@ fn has_torsion(scene: &Scene<'_>) -> bool {
     scene.plan.claims.contact.cone.is_some_and(|cone| cone.gamma > 0.0)
 }
 
-/// Dimension of contacts, and sliding, torsional (m) and rolling friction: soft fingers carry torques about their normals.
+/// Dimension of contacts, and sliding, torsional (m) and rolling friction: soft fingers carry torques about
+/// their normals.
 fn scene_friction(scene: &Scene<'_>) -> [(&'static str, String); 2] {
     let gamma = scene.plan.claims.contact.cone.map_or(0.0, |cone| cone.gamma);
     let dimension = if has_torsion(scene) { "4" } else { "3" };
@@ -293,7 +302,8 @@ fn drivers(xml: &mut Xml, scene: &Scene<'_>) {
     });
 }
 
-/// Motors with a stiffness and damping, saturated at the joints' efforts; what they aim at may lie beyond the joints' limits.
+/// Motors with a stiffness and damping, saturated at the joints' efforts; what they aim at may lie beyond the
+/// joints' limits.
 fn actuators(xml: &mut Xml, scene: &Scene<'_>) {
     xml.element("actuator", &[], |xml| {
         for (finger, joint) in motors(scene) {

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 
 /// What the joints and links of a hand are called in files.
 ///
-/// Joints keep their names where these differ, and take their finger's name in front where not. Links are called after the joint before them.
+/// Joints keep their names where these differ, and take their finger's name in front where not. Links are
+/// called after the joint before them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Names {
     /// For each finger, the joints' names.

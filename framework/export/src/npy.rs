@@ -31,6 +31,8 @@ fn motion(scene: &Scene<'_>, archive: &mut Archive) -> Result<(), ExportError> {
     archive.whole("segment", &[t], &segments)?;
     archive.whole("moving_finger", &[t], &moving)?;
     archive.floats("joints", &[t, joints.len()], postures)?;
+    let rates = rows.iter().flat_map(|row| row.velocities().unwrap_or(vec![f64::NAN; joints.len()]));
+    archive.floats("velocities", &[t, joints.len()], rates)?;
     archive.texts("joint_names", &joints)?;
     archive.texts("finger_names", &fingers)?;
     archive.floats("object_position", &[t, 3], rows.iter().flat_map(|row| row.object().0))?;

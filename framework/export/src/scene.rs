@@ -1,10 +1,10 @@
 //! A plan with everything that its exports need.
 
+use crate::ExportError;
 use crate::forces::Forces;
-use crate::names::{Names, file_stem};
-use crate::solid::Solids;
-use crate::{ExportError, File, Format};
-use regrasp_api::{Configuration, FingerIndex, Hand, HandDescription, ObjectModel, Pose, PoseDescription};
+use crate::names::Names;
+use crate::solid::{Solids, pose};
+use regrasp_api::{Configuration, FingerIndex, Hand, HandDescription, ObjectModel, Pose};
 use regrasp_plan::{Motion, Plan};
 use regrasp_world::ChainHand;
 
@@ -41,18 +41,6 @@ impl<'a> Scene<'a> {
         let solids = Solids::new(problem)?;
         let origins = origins(&problem.hand)?;
         Ok(Self { plan, hand, object, motion, names, forces, solids, origins })
-    }
-
-    /// The files of one format. `stem` begins their names; what no file's name may hold is replaced.
-    pub fn export(&self, format: Format, stem: &str) -> Result<Vec<File>, ExportError> {
-        let stem = &file_stem(stem);
-        match format {
-            Format::Gltf => Ok(crate::gltf::files(self, stem)),
-            Format::Urdf => Ok(crate::urdf::files(self, stem)),
-            Format::Mjcf => Ok(crate::mjcf::files(self, stem)),
-            Format::Csv => Ok(crate::csv::files(self, stem)),
-            Format::Npz => crate::npy::files(self, stem),
-        }
     }
 
     /// What whoever exports should know: why there are no forces, or that some are outside their cones.
@@ -115,9 +103,4 @@ fn origins(hand: &HandDescription) -> Result<Vec<Vec<Pose>>, ExportError> {
         all.push(origins);
     }
     Ok(all)
-}
-
-/// The pose that a description gives, or what is wrong at `key`.
-pub(crate) fn pose(description: &PoseDescription, key: impl Fn() -> String) -> Result<Pose, ExportError> {
-    description.pose().map_err(|error| ExportError::Pose { key: key(), error })
 }

@@ -1,11 +1,10 @@
 //! Shapes as other formats know them: primitives about their own frame, or triangles.
 
 use crate::ExportError;
-use crate::scene::pose;
 use nalgebra::Unit;
 use regrasp_api::{
-    FingerDescription, Mesh, MeshError, ObstacleDescription, PlacedShape, Pose, Primitive, Problem, Rotation,
-    Shape, Vec3,
+    FingerDescription, Mesh, MeshError, ObstacleDescription, PlacedShape, Pose, PoseDescription, Primitive,
+    Problem, Rotation, Shape, Vec3,
 };
 use regrasp_world::WorldError;
 
@@ -141,6 +140,11 @@ fn along(p: Vec3, axis: &Vec3) -> Pose {
     // Opposite directions have no shortest turn: any half turn about a horizontal axis will do.
     let turn = turn.unwrap_or_else(|| Rotation::from_axis_angle(&Vec3::x_axis(), std::f64::consts::PI));
     Pose::from_parts(p.into(), turn)
+}
+
+/// The pose that a description gives, or what is wrong at `key`.
+pub(crate) fn pose(description: &PoseDescription, key: impl Fn() -> String) -> Result<Pose, ExportError> {
+    description.pose().map_err(|error| ExportError::Pose { key: key(), error })
 }
 
 #[cfg(test)]

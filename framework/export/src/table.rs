@@ -1,7 +1,7 @@
 //! What tables say of one state.
 
 use crate::Scene;
-use regrasp_api::{Configuration, FingerIndex, Hand, Vec3};
+use regrasp_api::{Configuration, FingerIndex, FingerJoints, Hand, PerFinger, Vec3};
 use regrasp_physics::ContactForce;
 use regrasp_plan::SegmentKind;
 
@@ -13,6 +13,8 @@ pub(crate) struct Row<'a> {
     pub kind: SegmentKind,
     pub time: f64,
     pub q: &'a Configuration,
+    /// The joints' velocities (rad/s; m/s where prismatic), where the plan has them.
+    pub velocities: Option<&'a PerFinger<FingerJoints>>,
 }
 
 /// A contact in both frames (m), and what the finger exerts there on the object (in H).
@@ -27,12 +29,16 @@ pub(crate) struct Touch {
 impl Scene<'_> {
     /// The states in turn.
     pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
-        self.states().enumerate().map(|(state, (segment, time, q))| Row {
+        let segments = self.motion.segments.iter();
+        let velocities =
+            segments.flat_map(|segment| (0..segment.states.len()).map(|k| segment.velocities.get(k)));
+        self.states().zip(velocities).enumerate().map(|(state, ((segment, time, q), velocities))| Row {
             state,
             segment,
             kind: self.motion.segments[segment].kind,
             time,
             q,
+            velocities,
         })
     }
 
@@ -55,6 +61,11 @@ impl Scene<'_> {
 }
 
 impl Row<'_> {
+    /// The velocities of all joints in a row; `None` where the plan has none.
+    pub fn velocities(&self) -> Option<Vec<f64>> {
+        Some(self.velocities?.iter().flat_map(|(_, v)| v.to_vec()).collect())
+    }
+
     /// The segment's kind as plan files call it.
     pub fn kind_name(&self) -> &'static str {
         match self.kind {

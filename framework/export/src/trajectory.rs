@@ -14,8 +14,9 @@ pub(crate) fn trajectory(scene: &Scene<'_>, name: String) -> File {
     File { name, bytes: table.into_bytes() }
 }
 
-/// The trajectory with all that it takes to carry it out: the segment's number, the links of the fingertip that moves in it and of those that hold
-/// (with `;` between them), what the motors must aim at, and the least distance of a force from its friction cone (N).
+/// The trajectory with all that it takes to carry it out: the segment's number, the links of the fingertip
+/// that moves in it and of those that hold (with `;` between them), what the motors must aim at, and the
+/// least distance of a force from its friction cone (N).
 ///
 /// At a time that occurs twice other fingers hold from then on: the forces pass over while everything rests.
 pub(crate) fn controls(scene: &Scene<'_>, name: String) -> File {

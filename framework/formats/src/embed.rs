@@ -13,7 +13,8 @@ pub fn embed_obstacles(obstacles: &mut [ObstacleDescription], base: &Path) -> Re
     obstacles.iter_mut().enumerate().try_for_each(embed)
 }
 
-/// Loads the meshes of palm and links; files are looked for in `base`, errors name keys of the hand's own file.
+/// Loads the meshes of palm and links; files are looked for in `base`, errors name keys of the hand's own
+/// file.
 pub fn embed_hand(hand: &mut HandDescription, base: &Path) -> Result<(), FormatError> {
     embed_all(&mut hand.palm, base, "palm")?;
     for (f, finger) in hand.finger.iter_mut().enumerate() {

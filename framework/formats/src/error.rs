@@ -90,7 +90,8 @@ impl Refuse for FormatError {
     }
 }
 
-/// Why a robot's file is refused: the file, the line where there is one, what is wrong there and what probably mends it.
+/// Why a robot's file is refused: the file, the line where there is one, what is wrong there and what
+/// probably mends it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RobotFileError {
     /// The file.

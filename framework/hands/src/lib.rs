@@ -14,6 +14,7 @@
 //! is either given in the options, or chosen and said in the report; limits are never invented.
 
 mod contacts;
+mod find;
 mod fingers;
 mod guess;
 mod joints;

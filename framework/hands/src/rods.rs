@@ -8,7 +8,8 @@ use std::borrow::Cow;
 /// How far (m) ball and cylinder may be off.
 const CLOSE: f64 = 1e-6;
 
-/// The shapes, each cylinder with its two balls as one capsule: quicker to keep clear of than a prism, and rounder.
+/// The shapes, each cylinder with its two balls as one capsule: quicker to keep clear of than a prism, and
+/// rounder.
 pub(crate) fn joined(solids: &[Solid]) -> Vec<Cow<'_, Solid>> {
     let mut taken = vec![false; solids.len()];
     let mut capsules = Vec::new();

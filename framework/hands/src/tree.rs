@@ -64,7 +64,8 @@ impl<'m> Tree<'m> {
         if let [first, second, ..] = roots[..] {
             let all: Vec<String> = roots.iter().map(|&root| name(root)).collect();
             let message = format!(
-                "the links {} hang on no joint: a robot has one root; join {} to {} by a fixed joint, or remove it",
+                "the links {} hang on no joint: a robot has one root; join {} to {} by a fixed joint, or \
+                    remove it",
                 all.join(", "),
                 name(second),
                 name(first)
@@ -82,7 +83,8 @@ impl<'m> Tree<'m> {
             Some(link) => {
                 let joint = &self.model.joints[self.above[link].expect("only the root has none")];
                 let message = format!(
-                    "the joints form a loop through joint `{}` and link {}; a URDF is a tree: remove one joint of the loop",
+                    "the joints form a loop through joint `{}` and link {}; a URDF is a tree: remove one \
+                        joint of the loop",
                     joint.name,
                     name(link)
                 );
@@ -152,7 +154,8 @@ fn index<'m>(
 
 fn two_parents(joint: &Joint, other: &Joint) -> Fault {
     let message = format!(
-        "link `{}` hangs on two joints, `{}` and `{}`: the links form a loop; a URDF is a tree: remove one of the joints",
+        "link `{}` hangs on two joints, `{}` and `{}`: the links form a loop; a URDF is a tree: remove one \
+            of the joints",
         joint.child, other.name, joint.name
     );
     Fault::at(joint.line, message)

@@ -37,7 +37,8 @@ impl Registry {
         Self::new(inventory::iter::<Entry>)
     }
 
-    /// A registry of the given entries; refuses an id that occurs twice or does not begin with the entry's role.
+    /// A registry of the given entries; refuses an id that occurs twice or does not begin with the entry's
+    /// role.
     pub fn new(entries: impl IntoIterator<Item = &'static Entry>) -> Result<Self, HostError> {
         let mut entries: Vec<&'static Entry> = entries.into_iter().collect();
         entries.sort_by_key(|entry| entry.id);
@@ -53,7 +54,8 @@ impl Registry {
 
     /// The same registry with the plugins of libraries added.
     ///
-    /// All libraries are read first: if one of them does not fit this program, or has a plugin whose id is taken, none is loaded.
+    /// All libraries are read first: if one of them does not fit this program, or has a plugin whose id is
+    /// taken, none is loaded.
     pub fn with_libraries<P: AsRef<Path>>(mut self, paths: &[P]) -> Result<Self, HostError> {
         let inspected = paths.iter().map(|path| inspect(path.as_ref())).collect::<Result<Vec<_>, _>>()?;
         for library in &inspected {

@@ -26,12 +26,14 @@ pub enum PhysicsError {
     Problem(String),
     /// The plan relies on torsional friction.
     #[error(
-        "rapier's contacts carry no torsional friction, but the contact model relies on it; use `contact-model/pcwf`, or a simulator that has it"
+        "rapier's contacts carry no torsional friction, but the contact model relies on it; use \
+            `contact-model/pcwf`, or a simulator that has it"
     )]
     Torsion,
     /// The hand declares point fingertips.
     #[error(
-        "simulated fingertips are balls, which roll, but the hand declares point fingertips, which stay where they are set down; plan with balls"
+        "simulated fingertips are balls, which roll, but the hand declares point fingertips, which stay \
+            where they are set down; plan with balls"
     )]
     PointFingertips,
 }

@@ -9,15 +9,18 @@ use rapier3d_f64::prelude::{
 };
 use regrasp_api::{FingerIndex, FingerJoints, Hand, JointKind, TipKinematics, Vec3};
 
-/// Mass of one link (kg). A hand's mass is not in its description; at the speed of manipulation it hardly matters.
+/// Mass of one link (kg). A hand's mass is not in its description; at the speed of manipulation it hardly
+/// matters.
 const LINK_MASS: f64 = 0.015;
 /// Least inertia of a link about its centre (kg·m²): that of a ball of a centimetre.
 const LINK_INERTIA: f64 = 2e-6;
-/// Inertia of a motor reflected through its gear (kg·m²; kg where prismatic): our choice, that of a small servo.
+/// Inertia of a motor reflected through its gear (kg·m²; kg where prismatic): our choice, that of a small
+/// servo.
 const ARMATURE: f64 = 5e-5;
 const LINEAR_ARMATURE: f64 = 0.02;
 
-/// Collision groups: fingertips meet the object's surface and what is fixed, the object's hull meets what is fixed.
+/// Collision groups: fingertips meet the object's surface and what is fixed, the object's hull meets what is
+/// fixed.
 pub(crate) const TIPS: Group = Group::GROUP_1;
 pub(crate) const OBJECT: Group = Group::GROUP_2;
 /// The object's convex hull, for what is fixed.
@@ -56,8 +59,8 @@ struct Axis {
     p: Vec3,
 }
 
-/// The joints' axes at a posture, from the fingertip's Jacobians alone: the velocity of the tip's centre about a revolute axis is
-/// ω × (c - p), so that the axis' nearest point is p = c - J_v × J_w.
+/// The joints' axes at a posture, from the fingertip's Jacobians alone: the velocity of the tip's centre
+/// about a revolute axis is ω × (c - p), so that the axis' nearest point is p = c - J_v × J_w.
 fn axes(tip: &TipKinematics, kinds: impl Iterator<Item = JointKind>) -> Vec<Axis> {
     let axis = |(j, kind): (usize, JointKind)| {
         let (v, w): (Vec3, Vec3) = (tip.J_v.column(j).into(), tip.J_w.column(j).into());
@@ -72,8 +75,9 @@ fn axes(tip: &TipKinematics, kinds: impl Iterator<Item = JointKind>) -> Vec<Axis
 impl SimulatedFinger {
     /// Builds the finger at rest at `joints`.
     ///
-    /// A chain of bodies with the same joints' axes as the finger at this posture moves as the finger does at every posture. Links have
-    /// nominal masses and no shapes but the fingertip's ball; their weight is held by the motors and left out.
+    /// A chain of bodies with the same joints' axes as the finger at this posture moves as the finger does at
+    /// every posture. Links have nominal masses and no shapes but the fingertip's ball; their weight is held
+    /// by the motors and left out.
     pub fn new(
         world: &mut PhysicsWorld,
         hand: &dyn Hand,
@@ -118,8 +122,8 @@ impl SimulatedFinger {
 
     /// Sets the motors' targets: positions (rad; m), speeds (rad/s; m/s) and efforts fed forward (N·m; N).
     ///
-    /// A motor is a spring k (q* - q) with a damper d (q̇* - q̇), whose sum saturates at the joint's effort. Both act implicitly: rapier's
-    /// joint spring and damping, the spring's rest being q* + (d q̇* + τ)/k.
+    /// A motor is a spring k (q* - q) with a damper d (q̇* - q̇), whose sum saturates at the joint's effort.
+    /// Both act implicitly: rapier's joint spring and damping, the spring's rest being q* + (d q̇* + τ)/k.
     pub fn drive(
         &self,
         world: &mut PhysicsWorld,

@@ -15,7 +15,8 @@ pub struct Pace {
 const LEAST: f64 = 1e-4;
 
 impl Pace {
-    /// The time (s, from 0) at which each state is passed: the speeds of `speed`, started and stopped at constant acceleration.
+    /// The time (s, from 0) at which each state is passed: the speeds of `speed`, started and stopped at
+    /// constant acceleration.
     pub fn times(&self, hand: &dyn Hand, states: &[Configuration]) -> Vec<f64> {
         let mut times = Vec::with_capacity(states.len());
         let mut now = 0.0;
@@ -40,8 +41,8 @@ impl Pace {
     }
 }
 
-/// The time at which a motion of duration `total` reaches what it would have reached at `time`, were it not started and stopped within
-/// `ramp` each.
+/// The time at which a motion of duration `total` reaches what it would have reached at `time`, were it not
+/// started and stopped within `ramp` each.
 fn ramped(time: f64, total: f64, ramp: f64) -> f64 {
     let half = 0.5 * ramp;
     if time < half {

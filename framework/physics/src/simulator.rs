@@ -91,8 +91,9 @@ impl Simulator {
         Self { world, fingers, object, surface, radius: scene.hand.fingertip_radius(), slip_O }
     }
 
-    /// Goes through the knots and takes what happens into the outcome, until something happens that must not. Net slip counts from here.
-    /// `passed` is told the time (s) and the object's pose at each knot but the first, and where the run ends early.
+    /// Goes through the knots and takes what happens into the outcome, until something happens that must not.
+    /// Net slip counts from here. `passed` is told the time (s) and the object's pose at each knot but the
+    /// first, and where the run ends early.
     pub fn run(
         &mut self,
         knots: &[Knot],
@@ -182,7 +183,8 @@ impl Simulator {
         (slip > bounds.slip).then_some(Happening::Slip(finger))
     }
 
-    /// The gap (m) between fingertip and object, and the normal outward from the object; `None` where they are far apart.
+    /// The gap (m) between fingertip and object, and the normal outward from the object; `None` where they
+    /// are far apart.
     fn contact(&self, finger: FingerIndex) -> Option<(f64, Vec3)> {
         let tip = self.fingers[finger.index()].tip;
         let pair = self.world.narrow_phase.contact_pair(tip, self.surface)?;

@@ -12,12 +12,14 @@ use regrasp_api::Mesh;
 
 /// The mesh as one surface that a ball touches at its closest point.
 ///
-/// Rapier's own triangle meshes give a ball one contact per nearby triangle, its convex solids are limited to convex
-/// meshes, and its exact primitives are up to a facet's height off the mesh that plans speak of. A ball against this shape has one
-/// contact, at the closest point and with the normal from there to its centre: the very contact of a plan, on convex and
-/// concave meshes alike. The normal is continuous on convex edges, so a ball rolls over facets without a jolt.
+/// Rapier's own triangle meshes give a ball one contact per nearby triangle, its convex solids are limited to
+/// convex meshes, and its exact primitives are up to a facet's height off the mesh that plans speak of. A
+/// ball against this shape has one contact, at the closest point and with the normal from there to its
+/// centre: the very contact of a plan, on convex and concave meshes alike. The normal is continuous on convex
+/// edges, so a ball rolls over facets without a jolt.
 ///
-/// Rapier knows contacts of custom shapes with balls only: what else the object may hit needs a shape of its own.
+/// Rapier knows contacts of custom shapes with balls only: what else the object may hit needs a shape of its
+/// own.
 #[derive(Clone)]
 struct BallSurface(TriMesh);
 

@@ -53,7 +53,8 @@ fn forces_balance_the_weight_inside_their_cones() {
     }
 }
 
-/// Virtual work: the efforts do as much along a motion of the joints as the force does on the point that it moves.
+/// Virtual work: the efforts do as much along a motion of the joints as the force does on the point that it
+/// moves.
 #[test]
 fn efforts_do_the_work_of_the_forces() {
     let (hand, object) = (hand(), object("{ kind = \"sphere\", radius = 0.03 }"));

@@ -54,9 +54,10 @@ pub struct PlanCertificate {
     pub closure_margin: Option<Extreme>,
     /// Smallest distance of two bodies that may not touch (m). Absent where no two such bodies exist.
     pub clearance: Option<Extreme>,
-    /// Largest net slip of a contact over one transfer (m). Absent without transfers.
+    /// Largest net slip of a contact from its finger's touch-down to its lift (m), sampled at ten times the plan's resolution. Absent without
+    /// transfers.
     pub slip: Option<Extreme>,
-    /// Largest distance between a holding fingertip and the surface (m). Absent where no finger holds.
+    /// Largest distance between a holding fingertip and the surface (m), sampled likewise. Absent where no finger holds.
     pub closure_residual: Option<Extreme>,
     /// What the grasps hold within the joints' efforts. Absent where the plan holds no forces.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct Claims {
     /// Which wrenches each contact transmits.
     pub contact: ContactClaim,
-    /// What makes a grasp stable: closure, or equilibrium with the object's weight (mass and gravity are the scenario's) and a load.
+    /// What makes a grasp stable: closure, or equilibrium with the object's weight (mass and gravity are the
+    /// scenario's) and a load.
     pub criterion: Criterion,
     /// How contacts move in a transfer.
     pub transfer_law: TransferLaw,
@@ -26,8 +27,8 @@ pub struct ContactClaim {
     pub model: String,
     /// The cone that all contacts share; absent where they do not, or it is not elliptic.
     pub cone: Option<ConeClaim>,
-    /// The cones of a plan whose contacts do not share one elliptic cone: each state names the one of each contact by its number here.
-    /// Without them too, stability is not independently checked.
+    /// The cones of a plan whose contacts do not share one elliptic cone: each state names the one of each
+    /// contact by its number here. Without them too, stability is not independently checked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cones: Vec<ConeRecord>,
 }
@@ -42,7 +43,8 @@ pub enum ConeRecord {
     Polyhedral(Vec<EdgeRecord>),
 }
 
-/// One edge of a polyhedral cone at unit normal force, with the tangents t1 = any_orthogonal(n) and t2 = n × t1 of the inward normal n.
+/// One edge of a polyhedral cone at unit normal force, with the tangents t1 = any_orthogonal(n) and t2 = n ×
+/// t1 of the inward normal n.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EdgeRecord {
@@ -91,8 +93,8 @@ pub enum TransferLaw {
     /// The fingertips roll on the object, without slip and free to spin.
     #[default]
     Rolling,
-    /// The contacts stay where they are on the object, and the fingertips' centres with them: for hands that declare point fingertips, which
-    /// turn freely about their contacts.
+    /// The contacts stay where they are on the object, and the fingertips' centres with them: for hands that
+    /// declare point fingertips, which turn freely about their contacts.
     FixedPoint,
 }
 
@@ -117,7 +119,8 @@ pub struct MarginFrame {
 }
 
 impl MarginFrame {
-    /// The frame that plans use: the object's centre of mass, and the largest distance of its surface from there.
+    /// The frame that plans use: the object's centre of mass, and the largest distance of its surface from
+    /// there.
     pub fn of_object(object: &ObjectModel) -> Self {
         let distance = |v: &regrasp_api::Vec3| (v - object.p_OCm).norm();
         let length = object.mesh.vertices().iter().map(distance).fold(0.0, f64::max);

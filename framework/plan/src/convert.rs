@@ -80,14 +80,22 @@ pub fn records(motion: &Motion, hand: &dyn Hand) -> Result<Vec<SegmentRecord>, C
             SegmentKind::Transfer => (SegmentName::Transfer, None),
             SegmentKind::Regrasp(finger) => (SegmentName::Regrasp, Some(finger.0)),
         };
-        let states = segment.states.iter().zip(&segment.times);
-        let states = states.map(|(q, &time)| state_record(q, time, hand)).collect();
+        let states = segment.states.iter().zip(&segment.times).enumerate();
+        let states = states.map(|(k, (q, &time))| {
+            let velocities = segment.velocities.get(k).map(rows);
+            StateRecord { velocities, ..state_record(q, time, hand) }
+        });
+        let states = states.collect();
         Ok(SegmentRecord { kind, finger, states })
     };
     motion.segments.iter().enumerate().map(one).collect()
 }
 
-/// The file's form of one configuration at a time (s).
+fn rows(joints: &PerFinger<FingerJoints>) -> Vec<Vec<f64>> {
+    joints.iter().map(|(_, joints)| joints.to_vec()).collect()
+}
+
+/// The file's form of one configuration at a time (s), without velocities.
 pub fn state_record(q: &Configuration, time: f64, hand: &dyn Hand) -> StateRecord {
     let orientation = q.X_HO.rotation.quaternion();
     let contact = |(finger, contact): (FingerIndex, &Option<Contact>)| {
@@ -107,7 +115,7 @@ pub fn state_record(q: &Configuration, time: f64, hand: &dyn Hand) -> StateRecor
             position: q.X_HO.translation.vector.into(),
             orientation: [orientation.w, orientation.i, orientation.j, orientation.k],
         },
-        joints: q.joints.iter().map(|(_, joints)| joints.to_vec()).collect(),
+        joints: rows(&q.joints),
         velocities: None,
         contacts: q.contacts.iter().map(contact).collect(),
         cones: None,
@@ -138,6 +146,7 @@ pub fn motion(plan: &Plan) -> Result<Motion, ConvertError> {
             kind,
             states: record.states.iter().enumerate().map(state).collect::<Result<_, _>>()?,
             times: record.states.iter().map(|state| state.time).collect(),
+            velocities: record.states.iter().map_while(velocities).collect(),
         })
     };
     Ok(Motion { segments: plan.segments.iter().enumerate().map(one).collect::<Result<_, _>>()? })
@@ -145,9 +154,9 @@ pub fn motion(plan: &Plan) -> Result<Motion, ConvertError> {
 
 /// Whether a state has the hand's fingers and joints.
 fn fits(state: &StateRecord, fingers: &[FingerDescription]) -> Result<(), StateError> {
-    let (joints, wanted) =
-        (state.joints.iter().map(Vec::len), fingers.iter().map(|finger| finger.joint.len()));
-    if joints.eq(wanted) {
+    let wanted = || fingers.iter().map(|finger| finger.joint.len());
+    let fits = |rows: &Vec<Vec<f64>>| rows.iter().map(Vec::len).eq(wanted());
+    if fits(&state.joints) && state.velocities.as_ref().is_none_or(fits) {
         return Ok(());
     }
     Err(StateError::OtherHand)
@@ -162,12 +171,7 @@ pub fn configuration(state: &StateRecord) -> Result<Configuration, StateError> {
     if let Some(joints) = state.joints.iter().find(|joints| joints.len() > MAX_FINGER_JOINTS) {
         return Err(StateError::Joints(joints.len()));
     }
-    let joints = |finger: FingerIndex| {
-        let values = &state.joints[finger.index()];
-        let mut joints = FingerJoints::zeros(values.len());
-        joints.copy_from_slice(values);
-        joints
-    };
+    let joints = |finger: FingerIndex| row(&state.joints[finger.index()]);
     let contact = |finger: FingerIndex| {
         state.contacts[finger.index()].map(|contact| Contact {
             facet: UNKNOWN_FACET,
@@ -180,6 +184,18 @@ pub fn configuration(state: &StateRecord) -> Result<Configuration, StateError> {
         joints: PerFinger::from_fn(count, joints),
         contacts: PerFinger::from_fn(count, contact),
     })
+}
+
+/// The joint velocities of a state that fits its hand, where it has any.
+fn velocities(state: &StateRecord) -> Option<PerFinger<FingerJoints>> {
+    let rows = state.velocities.as_ref()?;
+    Some(PerFinger::from_fn(rows.len(), |finger: FingerIndex| row(&rows[finger.index()])))
+}
+
+fn row(values: &[f64]) -> FingerJoints {
+    let mut joints = FingerJoints::zeros(values.len());
+    joints.copy_from_slice(values);
+    joints
 }
 
 /// The pose with exactly the file's numbers: the quaternion is not normalised again.

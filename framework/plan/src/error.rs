@@ -36,7 +36,8 @@ pub enum ReadError {
     },
     /// The text ends in the middle.
     #[error(
-        "`{}` is truncated: it ends in line {line}, in the middle of the plan; copy it again or make it anew", path.display()
+        "`{}` is truncated: it ends in line {line}, in the middle of the plan; copy it again or make it \
+            anew", path.display()
     )]
     Truncated {
         /// The file.
@@ -62,7 +63,8 @@ pub enum ReadError {
     },
     /// JSON, but not a plan.
     #[error(
-        "`{}` is not a plan file: `format` is {found}, not \"regrasp-plan\"; a plan file is made by `plan SCENARIO -o PLAN`",
+        "`{}` is not a plan file: `format` is {found}, not \"regrasp-plan\"; a plan file is made by `plan \
+            SCENARIO -o PLAN`",
         path.display()
     )]
     Format {
@@ -73,7 +75,8 @@ pub enum ReadError {
     },
     /// A plan of another version.
     #[error(
-        "`{}` is a plan of format version {found}, this program reads versions {} to {known}; use the program that made it, or plan again",
+        "`{}` is a plan of format version {found}, this program reads versions {} to {known}; use the \
+            program that made it, or plan again",
         path.display(),
         crate::OLDEST_VERSION
     )]

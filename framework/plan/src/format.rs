@@ -33,7 +33,7 @@ pub struct Plan {
     pub seed: u64,
     /// Versions of the programs that made the plan, by name.
     pub versions: BTreeMap<String, String>,
-    /// What the program derived from the scenario's object; absent where contacts live on the object's own surface.
+    /// What the program derived from the scenario's object; absent where its mesh is all there is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<ObjectRecord>,
     /// What the plan claims of its contacts and grasps.

@@ -4,13 +4,15 @@ use serde::Serialize;
 use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
 use std::io::{self, Write};
 
-/// Containers nested deeper than this are written on one line. A plan's states lie just below: object, segments, segment, states.
+/// Containers nested deeper than this are written on one line. A plan's states lie just below: object,
+/// segments, segment, states.
 const PRETTY_DEPTH: usize = 4;
 
-/// Writes `value` as JSON: two spaces of indent, and every value nested more than four deep on one line; ends with a line break.
+/// Writes `value` as JSON: two spaces of indent, and every value nested more than four deep on one line; ends
+/// with a line break.
 ///
-/// Deterministic: keys in the order of the fields (of the keys in maps), numbers in the shortest form that reads back exactly. Numbers that
-/// are not finite become null.
+/// Deterministic: keys in the order of the fields (of the keys in maps), numbers in the shortest form that
+/// reads back exactly. Numbers that are not finite become null.
 pub fn write_json<T: Serialize>(value: &T, writer: &mut dyn Write) -> io::Result<()> {
     let formatter = Layered { pretty: PrettyFormatter::new(), depth: 0 };
     let mut serializer = Serializer::with_formatter(&mut *writer, formatter);

@@ -1,7 +1,7 @@
 //! The plan file: format, reading, writing, timing.
 //!
-//! A [`Motion`] is what the planner makes; [`assign_times`] times it; [`records`] turns it into the segments of a [`Plan`], which
-//! [`write()`] puts into a file and [`read`] gets back, every number exactly as it was.
+//! A [`Motion`] is what the planner makes; [`assign_times`] times it; [`records`] turns it into the segments
+//! of a [`Plan`], which [`write()`] puts into a file and [`read`] gets back, every number exactly as it was.
 
 mod certificate;
 mod claims;
@@ -30,3 +30,7 @@ pub use statistics::*;
 pub use surface::*;
 pub use timing::*;
 pub use write::*;
+
+/// How the names of files begin and end that are being written: those that a killed process left behind may
+/// be deleted.
+pub const TEMPORARY: (&str, &str) = (".regrasp-", ".tmp");

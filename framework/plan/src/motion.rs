@@ -1,6 +1,6 @@
 //! A motion in memory: segments of configurations, what the planner makes and the plan file holds.
 
-use regrasp_api::{Configuration, FingerIndex};
+use regrasp_api::{Configuration, FingerIndex, FingerJoints, PerFinger};
 
 /// What happens in a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +20,15 @@ pub struct Segment {
     pub states: Vec<Configuration>,
     /// Time of each state from the motion's start (s); empty until the motion is timed.
     pub times: Vec<f64>,
+    /// Joint velocities at each state (rad/s; m/s where prismatic); empty until the motion is timed, and in motions of plans of version 1.
+    pub velocities: Vec<PerFinger<FingerJoints>>,
+}
+
+impl Segment {
+    /// A segment without times.
+    pub fn new(kind: SegmentKind, states: Vec<Configuration>) -> Self {
+        Self { kind, states, times: Vec::new(), velocities: Vec::new() }
+    }
 }
 
 /// A motion from the start through all goals.

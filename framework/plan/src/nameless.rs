@@ -16,7 +16,8 @@ pub fn open(folder: &Path) -> Option<File> {
 
 /// Gives a complete file its name, in the place of what bears it already.
 ///
-/// Only a file that is replaced has another name for the moment before it is renamed: no call does both at once.
+/// Only a file that is replaced has another name for the moment before it is renamed: no call does both at
+/// once.
 pub fn put_in_place(file: &File, path: &Path, folder: &Path) -> io::Result<()> {
     match name(file, path) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}

@@ -1,6 +1,6 @@
 //! Writing plan files, so that a failure never costs what was there before.
 
-use crate::{ContactSurface, Plan, StateRecord, WriteError, write_json};
+use crate::{ContactSurface, Plan, StateRecord, TEMPORARY, WriteError, write_json};
 use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -35,9 +35,6 @@ pub fn check_place(path: &Path) -> Result<(), WriteError> {
         }
     }
 }
-
-/// How the names of files begin and end that are being written: those that a killed process left behind may be deleted.
-pub const TEMPORARY: (&str, &str) = (".regrasp-", ".tmp");
 
 /// What a path stands for.
 enum Target {
@@ -127,6 +124,10 @@ fn not_finite(plan: &Plan) -> Option<String> {
     };
     if !twin.is_none_or(twin_is_finite) {
         return Some("a value in the object's contact surface".into());
+    }
+    let facets = plan.object.as_ref().and_then(|object| object.surface.as_ref());
+    if !facets.is_none_or(|facets| facets.vertices.iter().flatten().all(|x| x.is_finite())) {
+        return Some("a value in the object's facets".into());
     }
     for (s, segment) in plan.segments.iter().enumerate() {
         if let Some(k) = segment.states.iter().position(|state| !is_finite(state)) {

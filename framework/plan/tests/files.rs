@@ -135,7 +135,8 @@ fn rich() -> Plan {
     let facets = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
     let vertices = vec![[0.0; 3], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]];
     let twin = ContactSurface { vertices, facets, digest: "00ff".into(), bound: 1e-4 };
-    plan.object = Some(ObjectRecord { contact_surface: Some(twin) });
+    let surface = Facets { vertices: twin.vertices.clone(), facets: twin.facets.clone() };
+    plan.object = Some(ObjectRecord { surface: Some(surface), contact_surface: Some(twin) });
     let edge = |x| EdgeRecord { tangential: [x, 0.1], torsion: 0.001 };
     plan.claims.contact.cone = None;
     plan.claims.contact.cones = vec![

@@ -7,54 +7,121 @@ use proptest::prelude::*;
 use regrasp_api::*;
 use regrasp_plan::*;
 
-/// All states once, with their times.
-fn flat(motion: &Motion) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let (mut joints, mut times) = (Vec::new(), Vec::new());
-    for (s, segment) in motion.segments.iter().enumerate() {
-        for (k, q) in segment.states.iter().enumerate() {
-            if s > 0 && k == 0 {
-                assert_eq!(segment.times[0], *times.last().unwrap(), "shared states share their time");
-                continue;
-            }
-            joints.push(q.joints.iter().flat_map(|(_, joints)| joints.to_vec()).collect());
-            times.push(segment.times[k]);
-        }
-    }
-    (joints, times)
+/// All states once: joints, velocities and times.
+struct Row {
+    q: Vec<Vec<f64>>,
+    v: Vec<Vec<f64>>,
+    t: Vec<f64>,
 }
 
-/// Largest velocity and acceleration as fractions of their limits; panics where times do not increase.
-fn utilisation(motion: &Motion, hand: &dyn Hand) -> (f64, f64) {
-    let (q, t) = flat(motion);
-    let (mut velocity, mut acceleration) = (0.0_f64, 0.0_f64);
-    let models: Vec<_> =
-        (0..hand.finger_count() as u8).map(|f| &hand.finger(FingerIndex(f)).joints).collect();
-    for (j, model) in models.into_iter().flatten().enumerate() {
-        let v = |k: usize| (q[k + 1][j] - q[k][j]) / (t[k + 1] - t[k]);
-        for k in 0..q.len() {
-            if k + 1 < q.len() {
-                assert!(t[k + 1] > t[k], "times increase");
-                velocity = velocity.max(v(k).abs() / model.velocity);
+fn row(motion: &Motion) -> Row {
+    let flat =
+        |joints: &PerFinger<FingerJoints>| joints.iter().flat_map(|(_, j)| j.to_vec()).collect::<Vec<_>>();
+    let mut row = Row { q: Vec::new(), v: Vec::new(), t: Vec::new() };
+    for (s, segment) in motion.segments.iter().enumerate() {
+        for (k, q) in segment.states.iter().enumerate() {
+            let (v, t) = (flat(&segment.velocities[k]), segment.times[k]);
+            if s > 0 && k == 0 {
+                assert_eq!((Some(&v), Some(&t)), (row.v.last(), row.t.last()), "shared states share all");
+                continue;
             }
-            let (before, from) = if k > 0 { (v(k - 1), t[k - 1]) } else { (0.0, t[k]) };
-            let (after, to) = if k + 1 < q.len() { (v(k), t[k + 1]) } else { (0.0, t[k]) };
-            acceleration = acceleration.max(2.0 * (after - before).abs() / (to - from) / model.acceleration);
+            row.q.push(flat(&q.joints));
+            row.v.push(v);
+            row.t.push(t);
         }
     }
-    (velocity, acceleration)
+    row
+}
+
+/// The cubic through positions and velocities at a time.
+fn played(row: &Row, step: usize, t: f64) -> Vec<f64> {
+    let h = row.t[step + 1] - row.t[step];
+    let f = (t - row.t[step]) / h;
+    let g = 1.0 - f;
+    let joint = |j: usize| {
+        let [a, b] = [row.q[step][j], row.q[step + 1][j]];
+        let [v, w] = [row.v[step][j] * h, row.v[step + 1][j] * h];
+        a * (1.0 + 2.0 * f) * g * g + b * f * f * (3.0 - 2.0 * f) + v * f * g * g - w * f * f * g
+    };
+    (0..row.q[0].len()).map(joint).collect()
+}
+
+/// How far the played tips are from the straight step, all joints having made the same part of it.
+fn strays(row: &Row, step: usize, q: &[f64]) -> f64 {
+    let change: Vec<f64> = row.q[step + 1].iter().zip(&row.q[step]).map(|(b, a)| b - a).collect();
+    let square: f64 = change.iter().map(|d| d * d).sum();
+    let made: f64 = q.iter().zip(&row.q[step]).zip(&change).map(|((q, a), d)| (q - a) * d).sum();
+    let part = if square > 0.0 { (made / square).clamp(0.0, 1.0) } else { 0.0 };
+    let off = |j: usize| q[j] - row.q[step][j] - part * change[j];
+    let tip = |f: usize| (0..3).map(|i| off(3 * f + i).powi(2)).sum::<f64>().sqrt();
+    (0..q.len() / 3).map(tip).fold(0.0, f64::max)
+}
+
+/// The largest velocity and acceleration as fractions of their limits, and the largest deviation (m), of what a controller plays at 1 kHz:
+/// by differences of the sampled positions alone.
+fn utilisation(motion: &Motion, hand: &dyn Hand) -> (f64, f64, f64) {
+    let row = row(motion);
+    assert!(row.t.windows(2).all(|pair| pair[1] > pair[0]), "times increase");
+    let fingers = (0..hand.finger_count() as u8).map(|f| hand.finger(FingerIndex(f)));
+    let models: Vec<&JointModel> = fingers.flat_map(|finger| &finger.joints).collect();
+    // The hand rests before and after.
+    let (mut before, mut last) = (row.q[0].clone(), row.q[0].clone());
+    let (mut fastest, mut steepest, mut farthest) = (0.0_f64, 0.0_f64, 0.0_f64);
+    let (dt, end) = (1e-3, *row.t.last().unwrap());
+    let mut step = 0;
+    for i in 1..=(end / dt) as usize + 3 {
+        let t = (i as f64 * dt).min(end);
+        while step + 2 < row.t.len() && row.t[step + 1] < t {
+            step += 1;
+        }
+        let q = played(&row, step, t);
+        farthest = farthest.max(strays(&row, step, &q));
+        for (j, model) in models.iter().enumerate() {
+            fastest = fastest.max((q[j] - last[j]).abs() / dt / model.velocity);
+            let acceleration = (q[j] - 2.0 * last[j] + before[j]).abs() / (dt * dt);
+            steepest = steepest.max(acceleration / model.acceleration);
+        }
+        before = std::mem::replace(&mut last, q);
+    }
+    (fastest, steepest, farthest)
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]
-    fn random_motions_keep_every_limit(seed in 0_u64..1_000_000, states in 2_usize..60,
-                                       velocity in 0.05_f64..5.0, acceleration in 0.05_f64..50.0) {
+    fn what_a_controller_plays_keeps_every_limit(seed in 0_u64..1_000_000, states in 2_usize..60,
+                                                 velocity in 0.05_f64..5.0, acceleration in 0.5_f64..50.0) {
         let hand = Fingertips::new(3, velocity, acceleration);
         let mut motion = walk(seed, 3, states);
-        assign_times(&mut motion, &hand, &TimingLimits::default()).unwrap();
-        let (v, a) = utilisation(&motion, &hand);
-        prop_assert!(v <= 1.0 && a <= 1.0, "{v} {a}");
+        let limits = TimingLimits { deviation: 1e-4, ..Default::default() };
+        assign_times(&mut motion, &hand, &limits).unwrap();
+        let (v, a, deviation) = utilisation(&motion, &hand);
+        prop_assert!(v <= 1.0 && a <= 1.01 && deviation <= limits.deviation, "{v} {a} {deviation}");
     }
+}
+
+#[test]
+fn a_smooth_path_is_driven_through_and_a_corner_is_a_stop() {
+    let hand = Fingertips::new(1, 1.0, 20.0);
+    let mut arc = straight(0.0, 60);
+    for (k, q) in arc.segments[0].states.iter_mut().enumerate() {
+        let angle = 0.02 * k as f64;
+        q.joints[FingerIndex(0)].copy_from_slice(&[0.05 * angle.cos(), 0.05 * angle.sin(), 0.0]);
+    }
+    assign_times(&mut arc, &hand, &TimingLimits::default()).unwrap();
+    let resting = |motion: &Motion| row(motion).v.iter().filter(|v| v.iter().all(|&v| v == 0.0)).count();
+    assert_eq!(resting(&arc), 2, "at both ends");
+    let (v, a, deviation) = utilisation(&arc, &hand);
+    assert!(v <= 1.0 && a <= 1.01 && deviation < 10e-6, "{v} {a} {deviation}");
+    let mut corner = straight(0.02, 20);
+    for q in &mut corner.segments[0].states[11..] {
+        let x = q.joints[FingerIndex(0)][0] - 0.01;
+        q.joints[FingerIndex(0)].copy_from_slice(&[0.01, x, 0.0]);
+    }
+    assign_times(&mut corner, &hand, &TimingLimits::default()).unwrap();
+    assert_eq!(resting(&corner), 3, "and at the corner");
+    let (_, a, deviation) = utilisation(&corner, &hand);
+    assert!(a <= 1.01 && deviation < 1e-9, "{a} {deviation}");
 }
 
 /// One joint moves from 0 to `distance` in equal steps.
@@ -67,7 +134,7 @@ fn straight(distance: f64, steps: usize) -> Motion {
         q
     };
     let states = (0..=steps).map(at).collect();
-    Motion { segments: vec![Segment { kind: SegmentKind::Transfer, states, times: vec![] }] }
+    Motion { segments: vec![Segment::new(SegmentKind::Transfer, states)] }
 }
 
 #[test]
@@ -79,18 +146,18 @@ fn a_straight_line_takes_the_time_of_the_bang_bang_profile() {
         assign_times(&mut motion, &hand, &TimingLimits::default()).unwrap();
         let duration = *motion.segments[0].times.last().unwrap();
         assert!((duration / expected - 1.0).abs() < 0.02, "{duration} against {expected}");
-        let (v, a) = utilisation(&motion, &hand);
-        assert!(v <= 1.0 && a <= 1.0 && a > 0.99, "{v} {a}");
+        let (v, a, _) = utilisation(&motion, &hand);
+        assert!(v <= 1.0 && a <= 1.01 && a > 0.99, "{v} {a}");
     }
 }
 
 #[test]
 fn the_object_keeps_its_own_speed() {
     let hand = Fingertips::new(1, 10.0, 1000.0);
-    let mut motion = straight(0.1, 10);
+    let mut motion = straight(0.1, 100);
     for (k, q) in motion.segments[0].states.iter_mut().enumerate() {
-        q.X_HO = Pose::translation(0.01 * k as f64, 0.0, 0.0)
-            * Rotation::from_scaled_axis(Vec3::z() * (0.1 * k as f64));
+        q.X_HO = Pose::translation(0.001 * k as f64, 0.0, 0.0)
+            * Rotation::from_scaled_axis(Vec3::z() * (0.01 * k as f64));
     }
     let limits = TimingLimits { object_speed: Some(0.1), ..Default::default() };
     assign_times(&mut motion, &hand, &limits).unwrap();

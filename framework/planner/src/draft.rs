@@ -135,7 +135,7 @@ mod tests {
     }
 
     fn segment(kind: SegmentKind, from: (f64, u32), to: (f64, u32)) -> Segment {
-        Segment { kind, states: vec![q(from.0, from.1), q(to.0, to.1)], times: vec![] }
+        Segment::new(kind, vec![q(from.0, from.1), q(to.0, to.1)])
     }
 
     /// Transfer, regrasp, transfer, regrasp, transfer, regrasp.

@@ -55,7 +55,8 @@ pub enum PlanError {
         reason: String,
     },
     /// Two bodies are in collision at a given configuration.
-    #[error("`{end}`: {} and {} are closer than the clearance; move the object or choose another grasp", body(&pair.0), body(&pair.1))]
+    #[error("`{end}`: {} and {} are closer than the clearance; move the object or choose another \
+        grasp", body(&pair.0), body(&pair.1))]
     Collision {
         /// Which end.
         end: End,
@@ -64,7 +65,8 @@ pub enum PlanError {
     },
     /// The given grasp is not stable.
     #[error(
-        "`{end}.grasp`: the grasp is not stable under contact model and friction {friction}; spread the contacts round the object or raise the friction"
+        "`{end}.grasp`: the grasp is not stable under contact model and friction {friction}; spread the \
+            contacts round the object or raise the friction"
     )]
     Unstable {
         /// Which end.
@@ -73,7 +75,8 @@ pub enum PlanError {
         friction: f64,
     },
     /// The hand has too few fingers.
-    #[error("the hand has {fingers} fingers, but under this contact model {fewest} contacts are the fewest that can be stable, and regrasping needs one more: {}", fewest + 1)]
+    #[error("the hand has {fingers} fingers, but under this contact model {fewest} contacts are the fewest \
+        that can be stable, and regrasping needs one more: {}", fewest + 1)]
     TooFewFingers {
         /// How many fingers the hand has.
         fingers: usize,

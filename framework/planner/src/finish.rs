@@ -27,7 +27,11 @@ impl Run<'_> {
         self.draft.align_quaternions();
         let mut motion = Motion { segments: std::mem::take(&mut self.draft.segments) };
         self.timed(Phase::Timing, |run| {
-            assign_times(&mut motion, run.request.hand, &TimingLimits::default())
+            assign_times(
+                &mut motion,
+                run.request.hand,
+                &TimingLimits::within(&run.request.problem.limits.tolerances),
+            )
         })?;
         self.statistics.regrasps = regrasps(&motion.segments);
         self.statistics.transfers = motion.segments.len() - self.statistics.regrasps;

@@ -8,17 +8,19 @@ use crate::steps::{rolled_to, transfer};
 use regrasp_api::{CallError, Configuration, Pose, Reason, Slot, interpolate};
 use regrasp_plan::Segment;
 
-/// How much of the way both ends together must be able to look along, for rolls go farther than looks. Our choice: with 1 the paper's sphere
-/// needs twice the instructions, with 0.3 a tenth more.
+/// How much of the way both ends together must be able to look along, for rolls go farther than looks. Our
+/// choice: with 1 the paper's sphere needs twice the instructions, with 0.3 a tenth more.
 const HOPE: f64 = 0.6;
 
-/// Where the fingers are regrasped if they cannot be where the rolls first met: this far on towards either end.
+/// Where the fingers are regrasped if they cannot be where the rolls first met: this far on towards either
+/// end.
 const ASIDE: f64 = 0.3;
 
 /// Transfers and regrasps from one configuration to another; `None` if they fail.
 ///
-/// The paper rolls from one end to the pose of the other and regrasps there. Here both ends roll towards each other, and the
-/// fingers are regrasped where they meet: a motion reversed is a motion, and two rolls reach twice as far as one.
+/// The paper rolls from one end to the pose of the other and regrasps there. Here both ends roll towards each
+/// other, and the fingers are regrasped where they meet: a motion reversed is a motion, and two rolls reach
+/// twice as far as one.
 pub(crate) fn connect(
     work: &mut Work<'_>,
     from: &Configuration,
@@ -42,7 +44,8 @@ pub(crate) fn connect(
     Ok(None)
 }
 
-/// Where on the way (a fraction) two ends meet that can look this far: at an end if the other sees all the way.
+/// Where on the way (a fraction) two ends meet that can look this far: at an end if the other sees all the
+/// way.
 fn share([ahead, behind]: [f64; 2]) -> f64 {
     if ahead >= 1.0 {
         1.0
@@ -80,7 +83,8 @@ fn approach(
     Ok(Some(([first, last], behind.end.X_HO)))
 }
 
-/// Both rolls made to end at a pose on their way, and the regrasps between them; the second roll is walked backwards.
+/// Both rolls made to end at a pose on their way, and the regrasps between them; the second roll is walked
+/// backwards.
 fn regrasp_at(
     work: &mut Work<'_>,
     [ahead, behind]: &mut [Segment; 2],

@@ -24,7 +24,7 @@ fn regrasp(
     let target =
         Target::Regrasp { finger, contact: to.contacts[finger].as_ref(), joints: &to.joints[finger] };
     let reached = work.plugins.regrasp.connect(work.task, q, &target, Some(&mut path), &mut work.context)?;
-    let segment = || Segment { kind: SegmentKind::Regrasp(finger), states: path.states, times: Vec::new() };
+    let segment = || Segment::new(SegmentKind::Regrasp(finger), path.states);
     Ok(reached.is_complete().then(segment))
 }
 

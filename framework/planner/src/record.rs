@@ -7,7 +7,8 @@ use std::collections::BTreeSet;
 
 /// The manipulation graph at the end of a run.
 ///
-/// It is the planner's own graph, handed out instead of dropped: to have it costs a run nothing, and what is asked of it is computed then.
+/// It is the planner's own graph, handed out instead of dropped: to have it costs a run nothing, and what is
+/// asked of it is computed then.
 pub struct GraphRecord {
     graph: Graph,
     ends: Vec<(End, NodeId)>,

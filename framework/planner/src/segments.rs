@@ -20,7 +20,8 @@ pub(crate) fn reversed(mut segments: Vec<Segment>) -> Vec<Segment> {
     segments
 }
 
-/// The last of the states after `at`, which lie on one straight motion of the object, that is no farther along it than `end`.
+/// The last of the states after `at`, which lie on one straight motion of the object, that is no farther
+/// along it than `end`.
 pub(crate) fn farthest(states: &[Configuration], at: usize, end: &Pose) -> usize {
     let progress = |X_HO: &Pose| {
         let start = &states[at].X_HO;

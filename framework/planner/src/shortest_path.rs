@@ -29,9 +29,9 @@ impl Ord for Length {
 
 /// The shortest path from `start` to the nearest of `goals` in the planner's metric, `None` if there is none.
 ///
-/// P. Hart, N. Nilsson, B. Raphael, "A formal basis for the heuristic determination of minimum cost paths", IEEE Trans.
-/// Systems Science and Cybernetics 1968; the heuristic is the metric itself, which never overestimates. Ties are broken
-/// by node number, so that the path is unique.
+/// P. Hart, N. Nilsson, B. Raphael, "A formal basis for the heuristic determination of minimum cost paths",
+/// IEEE Trans. Systems Science and Cybernetics 1968; the heuristic is the metric itself, which never
+/// overestimates. Ties are broken by node number, so that the path is unique.
 pub(crate) fn shortest_path(graph: &Graph, start: NodeId, goals: &[NodeId]) -> Option<Vec<Step>> {
     let ahead = |node| goals.iter().map(|&goal| graph.distance(node, goal)).fold(f64::INFINITY, f64::min);
     let adjacent = adjacency(graph);

@@ -1,13 +1,14 @@
 //! Smoothing: fewer regrasps, shorter motions.
 //!
-//! A motion visits *stations*: poses at which the object rests while fingers are regrasped. A shortcut leaves station k with
-//! only some of its regrasps made (or none), rolls straight to the pose of a later station l, and regrasps there to the contacts
-//! with which the motion left l before. It is taken where it needs fewer regrasps. Goals stay where they are: a shortcut may
-//! end or start at a goal's pose, never pass it by.
+//! A motion visits *stations*: poses at which the object rests while fingers are regrasped. A shortcut leaves
+//! station k with only some of its regrasps made (or none), rolls straight to the pose of a later station l,
+//! and regrasps there to the contacts with which the motion left l before. It is taken where it needs fewer
+//! regrasps. Goals stay where they are: a shortcut may end or start at a goal's pose, never pass it by.
 //!
-//! The idea of shortcuts is that of R. Geraerts and M. Overmars, "Creating high-quality paths for motion planning", IJRR 2007; what a shortcut is here,
-//! and that it counts regrasps before lengths, is our own: the paper (A. Sahbani, J.-P. Saut, V. Perdereau, SSD 2007, "Solving dexterous manipulation queries") smooths "to eliminate
-//! unnecessary motions" and does not say how.
+//! The idea of shortcuts is that of R. Geraerts and M. Overmars, "Creating high-quality paths for motion
+//! planning", IJRR 2007; what a shortcut is here, and that it counts regrasps before lengths, is our own: the
+//! paper (A. Sahbani, J.-P. Saut, V. Perdereau, SSD 2007, "Solving dexterous manipulation queries") smooths
+//! "to eliminate unnecessary motions" and does not say how.
 
 use crate::draft::{Draft, Station, regrasps};
 use crate::foresight::barred_half_way;
@@ -32,7 +33,8 @@ pub(crate) struct Smoother<'a> {
     pub failed: HashSet<u64>,
 }
 
-/// A shortcut to try: from the start of station `from`, with the fingers `first` regrasped there, to the end of station `to`.
+/// A shortcut to try: from the start of station `from`, with the fingers `first` regrasped there, to the end
+/// of station `to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shortcut {
     from: Station,

@@ -18,7 +18,7 @@ pub(crate) fn transfer(
     let target = Target::Transfer(to);
     let reached =
         work.plugins.transfer.connect(work.task, from, &target, Some(&mut path), &mut work.context)?;
-    Ok((reached, Segment { kind: SegmentKind::Transfer, states: path.states, times: Vec::new() }))
+    Ok((reached, Segment::new(SegmentKind::Transfer, path.states)))
 }
 
 /// Transfer from `from` to the pose of `to`, then regrasps to its contacts; `None` if that fails.
@@ -62,5 +62,5 @@ pub(crate) fn rolled_to(
             rolled.states.clone_from(&states);
         }
     }
-    Ok(complete.then(|| Segment { kind: SegmentKind::Transfer, states, times: Vec::new() }))
+    Ok(complete.then(|| Segment::new(SegmentKind::Transfer, states)))
 }

@@ -4,8 +4,8 @@ use crate::cones::Cones;
 use crate::{RunError, Setup};
 use regrasp_api::{Criterion, FrictionFactor, HoldLoad, Problem};
 use regrasp_plan::{
-    Claims, ContactClaim, Format, MarginFrame, Plan, PluginChoice, ResolvedScenario, StoppedBy, TransferLaw,
-    VERSION,
+    Claims, ContactClaim, Facets, Format, MarginFrame, ObjectRecord, Plan, PluginChoice, ResolvedScenario,
+    StoppedBy, TransferLaw, VERSION,
 };
 use regrasp_planner::Outcome;
 use serde_json::Value;
@@ -31,7 +31,7 @@ impl Setup<'_> {
             scenario: self.resolved_scenario(problem),
             seed,
             versions: [("regrasp".to_owned(), env!("CARGO_PKG_VERSION").to_owned())].into(),
-            object: None,
+            object: self.object_record(),
             notes: regrasp_plan::plugin_notes(&outcome.tally),
             claims,
             goals_reached: outcome.goal_ends.clone(),
@@ -40,6 +40,13 @@ impl Setup<'_> {
             certificate: None,
             segments,
         })
+    }
+
+    /// The facets of a primitive; a mesh stands in the scenario.
+    fn object_record(&self) -> Option<ObjectRecord> {
+        let object = &self.scenario.object;
+        object.primitive?;
+        Some(ObjectRecord { surface: Some(Facets::from(&object.mesh)), contact_surface: None })
     }
 
     pub(super) fn resolved_scenario(&self, problem: &Problem) -> ResolvedScenario {

@@ -1,6 +1,7 @@
 //! One run: from a scenario to a plan that was verified.
 
 use crate::RunError;
+use crate::again::{TRIES, Try};
 use crate::error;
 use crate::scenario::{Scenario, ScenarioError};
 use regrasp_abi::GuardedService;
@@ -172,7 +173,9 @@ impl<'a> Setup<'a> {
         let begin = options.clock.seconds();
         let mut best: Option<Run> = None;
         for problem in self.problems() {
-            let run = self.plan_one(&problem, solve, options)?;
+            // A smaller share of the friction is one more wish: where it does not come about, nothing is tried again for it.
+            let tries = if best.is_none() { &TRIES[..] } else { &TRIES[..1] };
+            let run = self.plan_until_verified(&problem, solve, options, tries)?;
             let good = run.outcome.status == Status::Solved && run.is_verified();
             if best.is_some() && !good {
                 break;
@@ -200,14 +203,42 @@ impl<'a> Setup<'a> {
         hold.friction_factor.shares().iter().map(planned).collect()
     }
 
+    /// Plans in one way after the other until the verifier accepts the plan; where it accepts none, the last one tells why.
+    fn plan_until_verified(
+        &self,
+        problem: &Problem,
+        solve: Solve<'_>,
+        options: &RunOptions<'_>,
+        tries: &[Try],
+    ) -> Result<Run, RunError> {
+        let mut run = self.plan_one(problem, solve, options, tries[0])?;
+        let mut warnings = Vec::new();
+        for again in &tries[1..] {
+            let Some(verdict) = run.verdict.as_ref().filter(|_| !run.is_verified()) else { break };
+            if run.stopped_by.is_some() {
+                break;
+            }
+            warnings.push(again.warning(verdict));
+            let verification_s = run.verification_s;
+            let next = self.plan_one(problem, solve, options, *again)?;
+            if next.verdict.is_some() {
+                run = next;
+            }
+            run.verification_s += verification_s;
+        }
+        run.outcome.warnings.extend(warnings);
+        Ok(run)
+    }
+
     fn plan_one(
         &self,
         problem: &Problem,
         solve: Solve<'_>,
         options: &RunOptions<'_>,
+        how: Try,
     ) -> Result<Run, RunError> {
         let begin = options.clock.seconds();
-        let outcome = self.solve(problem, solve, options)?;
+        let outcome = self.solve(&how.problem(problem), solve, options, how.seed(options.seed))?;
         let planned = options.clock.seconds();
         let stopped_by = stopped_by(&outcome, options.stop);
         let (mut plan, mut verdict) = (None, None);
@@ -233,6 +264,7 @@ impl<'a> Setup<'a> {
         problem: &Problem,
         solve: Solve<'_>,
         options: &RunOptions<'_>,
+        seed: u64,
     ) -> Result<Outcome, RunError> {
         let (hand, clearance) = (self.hand(), &self.clearance as &dyn Clearance);
         let guarded = (GuardedService(hand), GuardedService(clearance));
@@ -242,7 +274,7 @@ impl<'a> Setup<'a> {
             clearance: if self.has_loaded { &guarded.1 } else { clearance },
             object: &self.scenario.object,
             plugins: self.plugins.plugins(),
-            seed: options.seed,
+            seed,
             threads: options.threads,
             interrupt: options.stop,
             clock: options.clock,

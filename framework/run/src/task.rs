@@ -13,15 +13,18 @@ impl Setup<'_> {
         &self.plugins
     }
 
-    /// The task that the planner hands the plugins of a run, for calls by hand: tests, experiments, measurements.
+    /// The task that the planner hands the plugins of a run, for calls by hand: tests, experiments,
+    /// measurements.
     ///
-    /// Its services are the program's own, without the guard that a run puts round them where plugins come from libraries.
+    /// Its services are the program's own, without the guard that a run puts round them where plugins come
+    /// from libraries.
     pub fn task(&self) -> Task<'_> {
         task(self.scenario, &self.clearance, &self.plugins, &self.poses)
     }
 
-    /// The margin that the stability test gives the grasp of all fingers that touch at `q`, at rest and with the friction that planning
-    /// relies on: a certified lower bound, in the test's own unit, 0 or less where the grasp is not stable.
+    /// The margin that the stability test gives the grasp of all fingers that touch at `q`, at rest and with
+    /// the friction that planning relies on: a certified lower bound, in the test's own unit, 0 or less where
+    /// the grasp is not stable.
     ///
     /// Torques are taken about the object's centre of mass and divided by its size, so that margins compare.
     pub fn margin(&self, q: &Configuration) -> Result<f64, RunError> {
@@ -53,7 +56,8 @@ pub(crate) fn task<'a>(
     }
 }
 
-/// What the task's stability test says of the grasp of all fingers that touch at `q`, as [`Setup::margin`] has it.
+/// What the task's stability test says of the grasp of all fingers that touch at `q`, as [`Setup::margin`]
+/// has it.
 pub(crate) fn assess(task: &Task<'_>, q: &Configuration) -> Result<Assessment, CallError> {
     let grasp = task.grasp(q, FingerSet::first(q.contacts.len()));
     let frame = regrasp_plan::MarginFrame::of_object(task.object);

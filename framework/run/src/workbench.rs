@@ -8,7 +8,8 @@ use regrasp_host::{PluginSet, Registry};
 use regrasp_world::SceneClearance;
 use std::sync::Arc;
 
-/// A scenario with the plugins that it names, built; what [`Setup`] is, without the planning, for as long as one likes.
+/// A scenario with the plugins that it names, built; what [`Setup`] is, without the planning, for as long as
+/// one likes.
 pub struct Workbench {
     scenario: Arc<Scenario>,
     clearance: SceneClearance,

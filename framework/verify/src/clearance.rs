@@ -19,6 +19,9 @@ use regrasp_plan::{Extreme, Place};
 
 /// How often a step between samples is halved before the clearance there counts as not certified: what remains is a hundredth of the step.
 const HALVINGS: u32 = 7;
+/// How far below the smallest distance found the distance of a pair may be between samples (m): what the certificate gives away so that its
+/// figure is a bound over all times.
+const GRAIN: f64 = 1e-4;
 /// The same over the whole plan.
 const MOST_HALVINGS: usize = 100_000;
 
@@ -138,7 +141,8 @@ impl<'s> ClearanceCheck<'s> {
             self.take(pair, after, || place(end));
         }
         self.lower[pair] = after;
-        if before.min(after) > self.demanded && (before + after - motion) / 2.0 <= self.demanded {
+        let target = self.target();
+        if before.min(after) > target && (before + after - motion) / 2.0 <= target {
             let before = self.exact(pair, &frames[sample - 1], false);
             let after = self.exact(pair, &frames[sample], false);
             let start = (sample - 1) as f64 / SAMPLES as f64;
@@ -149,7 +153,7 @@ impl<'s> ClearanceCheck<'s> {
     /// Makes sure that the pair stays apart between two instants of a step, given as fraction and exact distance.
     fn certify(&mut self, step: Step<'_, '_>, from: (f64, f64), to: (f64, f64), depth: u32) {
         let bound = (from.1 + to.1 - step.motion * (to.0 - from.0)) / 2.0;
-        if bound > self.demanded {
+        if bound > self.target() {
             return;
         }
         let middle = (from.0 + to.0) / 2.0;
@@ -168,6 +172,11 @@ impl<'s> ClearanceCheck<'s> {
             self.certify(step, from, (middle, distance), depth + 1);
             self.certify(step, (middle, distance), to, depth + 1);
         }
+    }
+
+    /// What distances between samples are certified to exceed: what is demanded, and the smallest one found less [`GRAIN`].
+    pub(crate) fn target(&self) -> f64 {
+        self.demanded.max(self.smallest - GRAIN)
     }
 
     fn take(&mut self, pair: usize, distance: f64, place: impl FnOnce() -> Place) {
@@ -256,9 +265,11 @@ impl<'s> ClearanceCheck<'s> {
         bound
     }
 
-    /// The smallest distance, for the certificate.
+    /// A lower bound of all distances at all times, for the certificate: at samples none is smaller than the smallest found, and between them
+    /// none is more than [`GRAIN`] below it.
     pub(crate) fn extreme(&self) -> Option<Extreme> {
-        self.gauge.worst().map(|value| Extreme { value, place: self.gauge.place().clone() })
+        let certified = |worst: f64| (worst - GRAIN).max(worst.min(self.demanded));
+        self.gauge.worst().map(|worst| Extreme { value: certified(worst), place: self.gauge.place().clone() })
     }
 
     pub(crate) fn check(self) -> Check {

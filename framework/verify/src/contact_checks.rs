@@ -46,30 +46,43 @@ pub(crate) struct ContactChecks<'s> {
     facets: [u32; MAX_FINGERS],
 }
 
-/// How one contact has moved since its transfer began.
+/// How one contact has moved since its finger touched down.
 #[derive(Clone, Copy)]
 struct Rolling {
     /// Where it touched first, and where its centre was then (m, in O).
     first: (Touch, Vec3),
+    /// The last sample.
     touch: Touch,
     p_OTip: Vec3,
+    /// The last link at the last even sample, and the contact half-way from there to the next.
     X_OL: Pose,
+    half_way: Option<Contact>,
     /// The sum of the differences of the two material points' displacements, tangential parts, in O (m).
     slip_O: Vec3,
 }
 
-impl Rolling {
-    /// Slip (m, in O) from here to the next sample, by a ball of `radius` (m).
-    ///
-    /// The displacement of the fingertip's material point at the contact, relative to the object, from the motion of the fingertip's centre
-    /// and its rotation in O, with the normal half-way: second order in the step. Rolling makes its tangential part zero.
-    fn slip_until(&self, next: &Self, radius: f64) -> Vec3 {
-        let n_O = (self.touch.n_O + next.touch.n_O).try_normalize(1e-9).unwrap_or(next.touch.n_O);
-        let turn = (next.X_OL.rotation * self.X_OL.rotation.inverse()).scaled_axis();
-        let displacement = next.p_OTip - self.p_OTip - turn.cross(&n_O) * radius;
-        displacement - n_O * n_O.dot(&displacement)
-    }
+/// A contact at one instant: the last link, the point and the normal, in O.
+#[derive(Clone, Copy)]
+struct Contact {
+    X_OL: Pose,
+    p_OC: Vec3,
+    n_O: Vec3,
+}
 
+impl Contact {
+    /// How far (m, in O) the material point of the fingertip that is the contact at this instant slips while its link moves from `from` to `to`:
+    /// its displacement relative to the object, whose own points rest in O, along the tangent plane. The midpoint rule, second order.
+    fn slip(&self, from: &Pose, to: &Pose) -> Vec3 {
+        let p_L = self.X_OL.inverse_transform_point(&Point3::from(self.p_OC));
+        tangential(&(to * p_L - from * p_L), &self.n_O)
+    }
+}
+
+fn tangential(v: &Vec3, n: &Vec3) -> Vec3 {
+    v - n * n.dot(v)
+}
+
+impl Rolling {
     /// How far (m) contact point or fingertip's centre are from where they began on the object, whichever is more.
     fn strayed(&self) -> f64 {
         let (touch, p_OTip) = &self.first;
@@ -92,11 +105,6 @@ impl<'s> ContactChecks<'s> {
         }
     }
 
-    /// Starts a segment: slip counts anew.
-    pub(crate) fn start(&mut self) {
-        self.rolling = [None; MAX_FINGERS];
-    }
-
     /// Takes in the sample `sample` of [`SAMPLES`] after `state`; returns where the holding fingers touch.
     pub(crate) fn sample(
         &mut self,
@@ -109,7 +117,6 @@ impl<'s> ContactChecks<'s> {
         let at = state + sample / SAMPLES;
         for (finger, found) in touches.iter_mut().enumerate().take(self.hand.fingers.len()) {
             let Some(claimed) = &leg.states[at].record.contacts[finger] else { continue };
-            let p_OTip = frames.p_OTip(finger);
             let touch = self.touch(finger, frames);
             let fraction = sample as f64 / SAMPLES as f64;
             let place = || Place { finger: Some(finger), ..leg.between(state, fraction) };
@@ -123,8 +130,9 @@ impl<'s> ContactChecks<'s> {
                     finger,
                 );
             }
-            if leg.moving.is_none() {
-                self.follow(finger, touch, p_OTip, frames, place);
+            // In a regrasp what holds rests: its slip is what it was.
+            if leg.moving.is_none() || sample == 0 {
+                self.follow(finger, touch, sample, frames, place);
             }
             *found = Some(touch);
         }
@@ -157,32 +165,55 @@ impl<'s> ContactChecks<'s> {
         self.normals.note(angle.max((n_O.norm() - 1.0).abs()), place);
     }
 
-    /// Measures the slip: what rolling adds up since the transfer began, or how far a fixed point has strayed from where it was then.
+    /// Measures the slip since touch-down: what rolling adds up, or how far a fixed point has strayed from where it was then.
     fn follow(
         &mut self,
         finger: usize,
         touch: Touch,
-        p_OTip: Vec3,
+        sample: usize,
         frames: &Frames,
         place: impl Fn() -> Place,
     ) {
         let X_OL = frames.X_HO.inv_mul(frames.last_link(&self.hand.fingers[finger]));
-        let mut now = Rolling { first: (touch, p_OTip), touch, p_OTip, X_OL, slip_O: Vec3::zeros() };
-        if let Some(last) = &self.rolling[finger] {
-            now.first = last.first;
-            // Closest points of a convex surface move no farther than the centre does: more is a jump over a concave edge.
-            let step = (p_OTip - last.p_OTip).norm();
-            self.jumps.note(((touch.p_OC - last.touch.p_OC).norm() - step).max(0.0), &place);
-            if self.law == TransferLaw::Rolling {
-                now.slip_O = last.slip_O + last.slip_until(&now, self.hand.tip_radius);
-            }
+        let p_OTip = frames.p_OTip(finger);
+        let Some(mut now) = self.rolling[finger] else {
+            let slip_O = Vec3::zeros();
+            let first = (touch, p_OTip);
+            self.rolling[finger] = Some(Rolling { first, touch, p_OTip, X_OL, half_way: None, slip_O });
+            self.slip.note(0.0, place);
+            return;
+        };
+        // Closest points of a convex surface move no farther than the centre does: more is a jump over a concave edge.
+        let step = (p_OTip - now.p_OTip).norm();
+        self.jumps.note(((touch.p_OC - now.touch.p_OC).norm() - step).max(0.0), &place);
+        if sample == 0 {
+            // A segment begins where the last one ended, but for a finger that moved without being lifted.
+            now.slip_O += tangential(&(p_OTip - now.p_OTip), &touch.n_O);
+            (now.X_OL, now.half_way) = (X_OL, None);
+        } else if let Some(half_way) = now.half_way.take() {
+            now.slip_O += half_way.slip(&now.X_OL, &X_OL);
+            now.X_OL = X_OL;
+        } else {
+            now.half_way = Some(Contact { X_OL, p_OC: touch.p_OC, n_O: touch.n_O });
         }
+        (now.touch, now.p_OTip) = (touch, p_OTip);
         let slip = match self.law {
             TransferLaw::FixedPoint => now.strayed(),
             _ => now.slip_O.norm(),
         };
         self.slip.note(slip, place);
         self.rolling[finger] = Some(now);
+    }
+
+    /// Takes in the end of a regrasp: where the finger was lifted, its slip counts anew; else it has slid to where it is now.
+    pub(crate) fn moved(&mut self, leg: &Leg<'_>, finger: usize, lifted: bool, frames: &Frames) {
+        let last = leg.states.len() - 1;
+        if lifted {
+            self.rolling[finger] = None;
+        } else if leg.states[last].holds(finger) {
+            let touch = self.touch(finger, frames);
+            self.follow(finger, touch, 0, frames, || Place { finger: Some(finger), ..leg.at(last) });
+        }
     }
 
     /// Largest closure residual and slip, for the certificate.

@@ -5,9 +5,11 @@ use crate::verdict::{COMPLETE, Check, Gauge, Side};
 use regrasp_api::{FingerGrasp, Pose, PoseDescription, Tolerances, Vec3, angle_between};
 use regrasp_plan::{Place, Plan};
 
-/// How far a contact may lie from the one that a scenario gives (m): its numbers are rounded, and projected to the surface.
+/// How far a contact may lie from the one that a scenario gives (m): its numbers are rounded, and projected
+/// to the surface.
 const GIVEN_CONTACT: f64 = 1e-3;
-/// The same for joints of a holding finger (rad; m), which follow from the contact: they choose among several postures.
+/// The same for joints of a holding finger (rad; m), which follow from the contact: they choose among several
+/// postures.
 const GIVEN_JOINT: f64 = 0.05;
 /// The same for joints of a free finger, which nothing else determines.
 const GIVEN_FREE_JOINT: f64 = 1e-6;

@@ -65,8 +65,13 @@ impl<'s> LiftCheck<'s> {
         self.row.push(Instant { state, fraction, height: touch.gap, p_OTip });
     }
 
-    /// Judges the whole regrasp.
-    pub(crate) fn finish(&mut self, leg: &Leg<'_>, finger: usize, clearance: &mut ClearanceCheck<'_>) {
+    /// Judges the whole regrasp; says whether the finger was lifted.
+    pub(crate) fn finish(
+        &mut self,
+        leg: &Leg<'_>,
+        finger: usize,
+        clearance: &mut ClearanceCheck<'_>,
+    ) -> bool {
         let row = std::mem::take(&mut self.row);
         let last = row.len() - 1;
         let highest = row.iter().map(|i| i.height).fold(f64::NEG_INFINITY, f64::max);
@@ -88,20 +93,22 @@ impl<'s> LiftCheck<'s> {
             self.certify(leg, finger, (&pair[0], &pair[1]), 0, clearance);
         }
         self.row = row;
+        highest >= self.lift
     }
 
     /// Follows a fingertip from its contact until it is lifted (backwards in time for the contact at the end).
     fn retreat(&mut self, leg: &Leg<'_>, finger: usize, instants: &mut dyn Iterator<Item = &Instant>) {
         let Some(contact) = instants.next() else { return };
-        let (mut before, mut touching) = (contact, true);
+        let (mut highest, mut touching) = (contact.height, true);
         for instant in instants {
             let place = || Place { finger: Some(finger), ..leg.between(instant.state, instant.fraction) };
-            self.rise.note(before.height - instant.height, place);
+            // Below the highest point yet, so that many small falls are one large one.
+            self.rise.note(highest - instant.height, place);
             touching &= instant.height <= self.tolerances.closure;
             if touching {
                 self.touch.note((instant.p_OTip - contact.p_OTip).norm(), place);
             }
-            before = instant;
+            highest = highest.max(instant.height);
         }
     }
 
@@ -119,9 +126,9 @@ impl<'s> LiftCheck<'s> {
         let tip = Body::Fingertip(regrasp_api::FingerIndex(finger as u8));
         let body = self.scene.bodies.iter().position(|solidity| solidity.body == tip);
         let motion = body.map_or(0.0, |body| self.scene.motion(body, leg, state)) * (end - start);
-        let demanded = self.tolerances.clearance;
+        let target = clearance.target();
         let bound = (a.height + b.height - motion) / 2.0;
-        if bound > demanded || a.height.min(b.height) <= demanded {
+        if bound > target || a.height.min(b.height) <= target {
             return; // Clear, or known not to be.
         }
         let fraction = (start + end) / 2.0;

@@ -1,4 +1,4 @@
-//! What can be seen from the plan's numbers alone: times, rates, limits, continuity, rest, contact sets.
+//! What can be seen from the plan's numbers alone: times, limits, continuity, rest, contact sets.
 
 use crate::hand::Chains;
 use crate::track::Leg;
@@ -64,39 +64,9 @@ pub(crate) fn driven_joints(hand: &Chains, legs: &[Leg<'_>]) -> Option<Check> {
     })
 }
 
-fn joint_place(hand: &Chains, leg: &Leg<'_>, state: usize, joint: usize) -> Place {
+pub(crate) fn joint_place(hand: &Chains, leg: &Leg<'_>, state: usize, joint: usize) -> Place {
     let (finger, joint) = hand.owner(joint);
     Place { finger: Some(finger), joint: Some(joint), ..leg.at(state) }
-}
-
-/// Velocities, and accelerations as second differences, of every joint over the whole motion: `regrasp_plan::assign_times` defines them.
-pub(crate) fn rates(hand: &Chains, legs: &[Leg<'_>]) -> [Check; 2] {
-    let mut velocities = Gauge::new("velocities", "of the limit", Side::AtMost, 1.0 + ROUNDING);
-    let mut accelerations = Gauge::new("accelerations", "of the limit", Side::AtMost, 1.0 + ROUNDING);
-    // The motion's states in a row; those that two segments share count once.
-    let row: Vec<(&Leg<'_>, usize)> = legs
-        .iter()
-        .enumerate()
-        .flat_map(|(s, leg)| (usize::from(s > 0)..leg.states.len()).map(move |k| (leg, k)))
-        .collect();
-    let state = |i: usize| &row[i].0.states[row[i].1];
-    let step = |i: usize| state(i + 1).record.time - state(i).record.time;
-    for (j, joint) in hand.joints().enumerate() {
-        let mut before = (0.0, 0.0);
-        for i in 0..row.len() {
-            let after = if i + 1 < row.len() {
-                (step(i), (state(i + 1).joints[j] - state(i).joints[j]) / step(i))
-            } else {
-                (0.0, 0.0)
-            };
-            let place = || joint_place(hand, row[i].0, row[i].1, j);
-            velocities.note(after.1.abs() / joint.velocity, place);
-            let acceleration = 2.0 * (after.1 - before.1) / (after.0 + before.0);
-            accelerations.note(acceleration.abs() / joint.acceleration, place);
-            before = after;
-        }
-    }
-    [velocities.check(), accelerations.check()]
 }
 
 /// Consecutive segments share their end states exactly.
@@ -114,8 +84,12 @@ pub(crate) fn continuity(legs: &[Leg<'_>]) -> Check {
 fn difference(a: &StateRecord, b: &StateRecord) -> f64 {
     let numbers = |s: &StateRecord| {
         let pose = s.object.position.into_iter().chain(s.object.orientation);
-        pose.chain([s.time]).chain(s.joints.concat()).collect::<Vec<_>>()
+        let velocities = s.velocities.iter().flatten().flatten().copied();
+        pose.chain([s.time]).chain(s.joints.concat()).chain(velocities).collect::<Vec<_>>()
     };
+    if a.velocities.is_some() != b.velocities.is_some() || a.cones != b.cones {
+        return f64::INFINITY;
+    }
     let contacts = a.contacts.iter().zip(&b.contacts).map(|(a, b)| contact_difference(a, b));
     largest(&numbers(a), &numbers(b)).max(contacts.fold(0.0, f64::max))
 }

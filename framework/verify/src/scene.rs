@@ -30,7 +30,7 @@ pub(crate) struct Solidity {
     link: Option<usize>,
     /// First joint of its finger, and how far its points can move for one unit of each joint (m).
     first: usize,
-    levers: [f64; MAX_FINGER_JOINTS],
+    pub(crate) levers: [f64; MAX_FINGER_JOINTS],
 }
 
 impl Scene {

@@ -39,7 +39,7 @@ impl std::error::Error for SeriesError {}
 /// transfers (a conic program for each grasp).
 pub fn series(plan: &Plan) -> Result<Vec<Vec<StateFigures>>, SeriesError> {
     let problem = &plan.scenario.problem;
-    let (hand, object) = prepare(problem).map_err(SeriesError)?;
+    let (hand, object) = prepare(plan).map_err(SeriesError)?;
     let unsound = |_| SeriesError("some states do not fit the hand; `verify` names them".into());
     let legs = track::legs(&plan.segments, &hand).map_err(unsound)?;
     let scene = Scene::new(problem, &object, &hand, &travel(&hand, &legs)).map_err(SeriesError)?;
@@ -68,7 +68,6 @@ struct Figures<'s> {
 
 impl Figures<'_> {
     fn segment(&mut self, leg: &Leg<'_>) -> Vec<StateFigures> {
-        self.contacts.start();
         self.stability.start();
         let mut figures: Vec<_> = (0..leg.states.len()).map(|state| self.state(leg, state)).collect();
         if let Some(finger) = leg.moving {

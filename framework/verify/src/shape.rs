@@ -1,6 +1,7 @@
 //! Solids as a core and a radius around it, and their exact distances by parry.
 
 use crate::border::{parry_pose, segment, vector};
+use crate::object::mesh_of;
 use crate::solid::Solid;
 use nalgebra::Point3;
 use parry3d_f64::math::Pose as ParryPose;
@@ -105,10 +106,7 @@ fn half_space(normal: &[f64; 3], offset: f64, X: &Pose) -> Result<Core, String> 
 }
 
 fn mesh(source: &MeshSource, X: &Pose) -> Result<Core, String> {
-    if source.file.is_some() {
-        return Err("the mesh is in another file; a plan must stand alone".into());
-    }
-    let mesh = source.mesh().map_err(|error| error.to_string())?;
+    let mesh = mesh_of(source)?;
     let vertices = mesh.vertices().iter().map(|v| (X * Point3::from(*v)).coords).collect();
     let moved = Mesh::new(vertices, mesh.facets().to_vec()).map_err(|error| error.to_string())?;
     Ok(Core::Mesh(Arc::new(Solid::new(&moved)?)))

@@ -23,6 +23,8 @@ pub(crate) struct State<'p> {
     pub(crate) X_HO: Pose,
     /// All joints of the hand, counted through.
     pub(crate) joints: Vec<f64>,
+    /// Their velocities, where the plan carries any.
+    pub(crate) velocities: Option<Vec<f64>>,
 }
 
 impl State<'_> {
@@ -84,24 +86,37 @@ pub(crate) fn legs<'p>(segments: &'p [SegmentRecord], hand: &Chains) -> Result<V
         }
         legs.push(Leg { index, moving, states });
     }
+    let with = legs.iter().flat_map(|leg| &leg.states).filter(|state| state.velocities.is_some()).count();
+    if with > 0 && with < legs.iter().map(|leg| leg.states.len()).sum() {
+        form.fault(|| Place {
+            note: Some("some states carry velocities, others do not".into()),
+            ..Default::default()
+        });
+    }
     if form.worst() == Some(0.0) { Ok(legs) } else { Err(Box::new(form)) }
 }
 
 fn state<'p>(record: &'p StateRecord, hand: &Chains) -> Result<State<'p>, &'static str> {
     let count = hand.fingers.len();
-    let joints_fit = record.joints.len() == count
-        && record.joints.iter().zip(&hand.fingers).all(|(q, chain)| q.len() == chain.joints.len());
-    if !joints_fit {
+    let fit = |rows: &[Vec<f64>]| {
+        rows.len() == count && rows.iter().zip(&hand.fingers).all(|(q, chain)| q.len() == chain.joints.len())
+    };
+    if !fit(&record.joints) {
         return Err("not one position for each joint of the hand");
+    }
+    if !record.velocities.as_ref().is_none_or(|velocities| fit(velocities)) {
+        return Err("not one velocity for each joint of the hand");
     }
     if record.contacts.len() != count {
         return Err("not one contact (or null) for each finger");
     }
     let joints: Vec<f64> = record.joints.concat();
+    let velocities = record.velocities.as_ref().map(|rows| rows.concat());
     let contacts = record.contacts.iter().flatten();
     let contacts = contacts.flat_map(|c| c.point_O.into_iter().chain(c.normal_O).chain(c.point_F));
     let pose = record.object.position.into_iter().chain(record.object.orientation);
-    let mut numbers = joints.iter().copied().chain(contacts).chain(pose).chain([record.time]);
+    let rates = velocities.iter().flatten().copied();
+    let mut numbers = joints.iter().copied().chain(rates).chain(contacts).chain(pose).chain([record.time]);
     // Beyond this, differences of the motion would overflow; no hand is a kilometre wide.
     if !numbers.all(|x| x.abs() < 1e6) {
         return Err("a number that is not finite, or far beyond any hand");
@@ -112,7 +127,7 @@ fn state<'p>(record: &'p StateRecord, hand: &Chains) -> Result<State<'p>, &'stat
         return Err("a quaternion that is zero");
     }
     let p = Translation3::from(Vec3::from(record.object.position));
-    Ok(State { record, X_HO: Pose::from_parts(p, Rotation::from_quaternion(quaternion)), joints })
+    Ok(State { record, X_HO: Pose::from_parts(p, Rotation::from_quaternion(quaternion)), joints, velocities })
 }
 
 /// Into how many samples each step of the plan is divided.
@@ -144,14 +159,15 @@ impl Frames {
         let from = &leg.states[state];
         let to = leg.states.get(state + 1).unwrap_or(from);
         self.X_HO = if fraction == 0.0 { from.X_HO } else { interpolate(&from.X_HO, &to.X_HO, fraction) };
+        self.place_joints(hand, |j| from.joints[j] + (to.joints[j] - from.joints[j]) * fraction);
+    }
+
+    /// Places all links, joint by joint counted through.
+    pub(crate) fn place_joints(&mut self, hand: &Chains, joint: impl Fn(usize) -> f64) {
         for (finger, chain) in hand.fingers.iter().enumerate() {
             let range = chain.first..chain.first + chain.joints.len();
             let mut q = [0.0; regrasp_api::MAX_FINGER_JOINTS];
-            for (q, (a, b)) in
-                q.iter_mut().zip(from.joints[range.clone()].iter().zip(&to.joints[range.clone()]))
-            {
-                *q = a + (b - a) * fraction;
-            }
+            q.iter_mut().zip(range.clone()).for_each(|(q, j)| *q = joint(j));
             chain.frames(&q[..range.len()], &mut self.X_HL[range]);
             self.p_HTip[finger] = self.tip(chain);
         }

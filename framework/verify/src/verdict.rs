@@ -126,6 +126,10 @@ impl Gauge {
         self.worst
     }
 
+    pub(crate) fn limit(&self) -> f64 {
+        self.limit
+    }
+
     pub(crate) fn place(&self) -> &Place {
         &self.place
     }

@@ -8,8 +8,8 @@ use crate::scene::Scene;
 use crate::stability::{HoldingCheck, HoldsCheck, StabilityCheck};
 use crate::track::{self, Frames, Leg, SAMPLES};
 use crate::verdict::{Gauge, Verdict};
-use crate::{claims, ends, motion_checks};
-use regrasp_api::{MAX_FINGERS, ObjectModel, ObjectShape, Problem, Tolerances, Vec3};
+use crate::{claims, controller, ends, motion_checks, object, rates};
+use regrasp_api::{MAX_FINGERS, ObjectModel, Tolerances, Vec3};
 use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 
 /// Verifies a plan. Whatever the plan holds, there is a verdict.
@@ -20,7 +20,9 @@ use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 /// |---|---|
 /// | `form` | hand, object and obstacles make sense and stand alone; each state fits the hand, every number is finite |
 /// | `quaternions` | orientations have norm 1 |
-/// | `times`, `velocities`, `accelerations` | times increase; each joint's rates stay within its limits, as `regrasp_plan::assign_times` defines them |
+/// | `times` | times increase |
+/// | `velocities`, `accelerations` | each joint's rates stay within its limits at all times, from rest to rest: of the cubic through positions and velocities, or, without velocities, of straight lines whose changes count over the shorter step |
+/// | `controller` | that cubic stays within half of the closure tolerance of the straight lines; only for plans with velocities |
 /// | `joint-limits` | each joint stays within its limits |
 /// | `driven-joints` | joints that others drive (`mimic`) are where their drivers have them; only for hands that have such joints |
 /// | `continuity` | consecutive segments share their end states exactly |
@@ -28,7 +30,7 @@ use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 /// | `contacts` | no finger starts or stops holding within a segment, but the one that a regrasp moves; resting contacts do not change |
 /// | `closure` | holding fingertips touch the surface, where the plan says and on the fingertip where it says |
 /// | `normals` | the plan's normals are those of the surface |
-/// | `slip` | no contact slips in sum over one transfer; by the law of fixed points, none leaves its place on the object |
+/// | `slip` | no contact slips in sum from its finger's touch-down to its lift, over however many segments; a regrasp that does not rise to the lift height counts as sliding; by the law of fixed points, none leaves its place on the object |
 /// | `contact-jumps` | no contact point jumps in a transfer |
 /// | `lift`, `touch-travel` | a moving fingertip rises until it is lifted, and does not slide while it touches |
 /// | `clearance` | every pair that may not touch keeps its distance, also between the samples |
@@ -40,7 +42,7 @@ use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 /// Cost: about 0.1 ms for a state of four fingers on one core.
 pub fn verify(plan: &Plan) -> Verdict {
     let problem = &plan.scenario.problem;
-    let (hand, object) = match prepare(problem) {
+    let (hand, object) = match prepare(plan) {
         Ok(parts) => parts,
         Err(note) => return refuse(note),
     };
@@ -60,17 +62,10 @@ fn refuse(note: String) -> Verdict {
     Verdict::new(vec![form.check()], None)
 }
 
-pub(crate) fn prepare(problem: &Problem) -> Result<(Chains, ObjectModel), String> {
-    let hand = Chains::new(&problem.hand)?;
-    if let ObjectShape::Mesh(source) = &problem.object.shape
-        && source.file.is_some()
-    {
-        return Err("the object's mesh is in another file; a plan must stand alone".into());
-    }
-    let object = regrasp_world::load_object(&problem.object).map_err(|e| e.to_string())?;
-    // A plan that grants itself tolerances beyond all reason would pass everything else.
-    regrasp_world::check_limits(&problem.limits).map_err(|e| e.to_string())?;
-    Ok((hand, object))
+pub(crate) fn prepare(plan: &Plan) -> Result<(Chains, ObjectModel), String> {
+    let hand = Chains::new(&plan.scenario.problem.hand)?;
+    object::check_limits(&plan.scenario.problem.limits)?;
+    Ok((hand, object::object_of(plan)?))
 }
 
 /// How far from zero each joint comes, by its limits or by the plan.
@@ -150,7 +145,6 @@ impl Walk<'_> {
         frames: &mut Frames,
         touches: &mut [Option<Touch>; MAX_FINGERS],
     ) {
-        sampled.contacts.start();
         sampled.stability.start();
         sampled.holding.iter_mut().flatten().for_each(HoldingCheck::start);
         sampled.lift.start();
@@ -204,7 +198,8 @@ impl Walk<'_> {
             sampled.clearance.step(leg, state, frames, touches);
         }
         if let Some(finger) = leg.moving {
-            sampled.lift.finish(leg, finger, &mut sampled.clearance);
+            let lifted = sampled.lift.finish(leg, finger, &mut sampled.clearance);
+            sampled.contacts.moved(leg, finger, lifted, &frames[SAMPLES]);
         }
     }
 
@@ -220,7 +215,8 @@ impl Walk<'_> {
         let mut checks = vec![Gauge::faults("form").check()];
         checks.push(motion_checks::quaternions(self.legs));
         checks.push(motion_checks::times(self.legs));
-        checks.extend(motion_checks::rates(self.hand, self.legs));
+        checks.extend(rates::rates(self.hand, self.legs));
+        checks.extend(controller::controller(self.hand, self.scene, self.legs, tolerances.closure));
         checks.push(motion_checks::joint_limits(self.hand, self.legs));
         checks.extend(motion_checks::driven_joints(self.hand, self.legs));
         checks.push(motion_checks::continuity(self.legs));

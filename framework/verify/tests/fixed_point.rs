@@ -1,4 +1,5 @@
-//! The law of fixed points: what a hand with declared point fingertips does in a transfer, and what it may not.
+//! The law of fixed points: what a hand with declared point fingertips does in a transfer, and what it may
+//! not.
 
 mod common;
 

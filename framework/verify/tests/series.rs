@@ -20,7 +20,7 @@ fn every_state_has_its_figures() {
     let clearance = all().map(|figure| figure.clearance.unwrap().0).fold(f64::INFINITY, f64::min);
     let certified = certificate.clearance.unwrap().value;
     // The certificate also looks between the states.
-    assert!(clearance >= certified - 1e-12 && clearance < certified + 1e-4, "{clearance} {certified}");
+    assert!(clearance >= certified - 1e-12 && clearance < certified + 2e-4, "{clearance} {certified}");
 }
 
 #[test]

@@ -42,6 +42,8 @@ fn probe(kind: SegmentName, states: &[[f64; 3]], edit: impl FnOnce(&mut Problem)
     problem.start.pose.position = [0.0, 0.0, -0.2];
     problem.obstacle.clear();
     edit(problem);
+    common::record_object(&mut plan);
+    let problem = &plan.scenario.problem;
     let object = PoseRecord { position: problem.start.pose.position, orientation: [1.0, 0.0, 0.0, 0.0] };
     let state = |(k, q): (usize, &[f64; 3])| StateRecord {
         time: k as f64,

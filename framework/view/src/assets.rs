@@ -7,7 +7,7 @@ pub(crate) const STYLE: &str = include_str!("../assets/style.css");
 /// The script that starts the modules.
 pub(crate) const LOADER: &str = include_str!("../assets/loader.js");
 /// The licence of three.js, which goes with every copy.
-pub(crate) const THREE_LICENSE: &str = include_str!("../../../third_party/three/LICENSE");
+pub(crate) const THREE_LICENSE: &str = include_str!("../third_party/three/LICENSE");
 
 macro_rules! own {
     ($($name:literal),+) => { [$(($name, include_str!(concat!("../assets/", $name)))),+] };
@@ -15,9 +15,9 @@ macro_rules! own {
 
 /// The modules of three.js, by the names under which others import them; who is imported comes first.
 pub(crate) const THREE: [(&str, &str); 3] = [
-    ("./three.core.min.js", include_str!("../../../third_party/three/three.core.min.js")),
-    ("three", include_str!("../../../third_party/three/three.module.min.js")),
-    ("three/orbit", include_str!("../../../third_party/three/OrbitControls.js")),
+    ("./three.core.min.js", include_str!("../third_party/three/three.core.min.js")),
+    ("three", include_str!("../third_party/three/three.module.min.js")),
+    ("three/orbit", include_str!("../third_party/three/OrbitControls.js")),
 ];
 
 /// The page's own modules, in the same order; they import each other by file name.

@@ -18,7 +18,8 @@ pub struct Extras {
 /// Two figures for each state of the plan, segment after segment.
 #[derive(Clone, Debug, Default)]
 pub struct StateCurves {
-    /// The closure margin, or what the plan's criterion puts in its place (no unit); `None` where there is none.
+    /// The closure margin, or what the plan's criterion puts in its place (no unit); `None` where there is
+    /// none.
     pub margin: Vec<Option<f64>>,
     /// What `margin` is, in a few words.
     pub margin_name: String,
@@ -87,6 +88,7 @@ pub struct ReplayTrack {
     pub caption: String,
     /// Times on the plan's clock (s), ascending.
     pub times: Vec<f64>,
-    /// The object's poses in the hand's frame then: position (m), and orientation as a unit quaternion w, x, y, z.
+    /// The object's poses in the hand's frame then: position (m), and orientation as a unit quaternion w, x,
+    /// y, z.
     pub poses: Vec<[f64; 7]>,
 }

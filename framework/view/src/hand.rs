@@ -145,7 +145,8 @@ pub(crate) fn pose(description: &PoseDescription, key: &str) -> Result<PoseData,
     Ok([p.x, p.y, p.z, q.w, q.i, q.j, q.k])
 }
 
-/// A finger's contact for the page: point, normal, and the point on the fingertip where it is known; empty for none.
+/// A finger's contact for the page: point, normal, and the point on the fingertip where it is known; empty
+/// for none.
 pub(crate) fn contact(contact: Option<&regrasp_plan::ContactRecord>) -> Vec<f64> {
     let Some(contact) = contact else { return Vec::new() };
     let points = contact.point_O.iter().map(|&x| nano(x)).chain(contact.normal_O.iter().map(|&x| micro(x)));

@@ -7,9 +7,9 @@ use regrasp_plan::Plan;
 
 /// The page that shows `plan` with `extras`: one HTML file that needs nothing else.
 ///
-/// The plan need not be valid, nor have a motion at all, but its states must fit its hand. About 0.9 MB, half a kilobyte
-/// for each state, and meshes up to 1.5 MB: what has more facets is drawn with fewer, and the page says so. A few milliseconds for each
-/// thousand states.
+/// The plan need not be valid, nor have a motion at all, but its states must fit its hand. About 0.9 MB, half
+/// a kilobyte for each state, and meshes up to 1.5 MB: what has more facets is drawn with fewer, and the page
+/// says so. A few milliseconds for each thousand states.
 pub fn page(plan: &Plan, extras: &Extras) -> Result<String, ViewError> {
     let data = serde_json::to_string(&data(plan, extras)?).expect("numbers and names can always be written");
     let fill = |name: &str| match name {
@@ -61,7 +61,8 @@ fn escape(text: &str) -> String {
     escaped
 }
 
-/// JSON that can stand in a script: no name in it can end the element. `<` occurs in texts only, where it may be written as a code.
+/// JSON that can stand in a script: no name in it can end the element. `<` occurs in texts only, where it may
+/// be written as a code.
 fn json_in_script(json: &str) -> String {
     json.replace('<', "\\u003c")
 }

@@ -1,8 +1,10 @@
-//! A plan as one HTML page that plays it: hand, object and obstacles in 3-D, contacts, friction cones, the margins over time.
+//! A plan as one HTML page that plays it: hand, object and obstacles in 3-D, contacts, friction cones, the
+//! margins over time.
 //!
-//! [`page`] turns a plan file's content, and what else is known of it ([`Extras`]), into the text of the page. The page stands alone: data, style,
-//! code and three.js (`third_party/three`) are inside, and nothing is loaded from anywhere. Its code (`assets/`) computes in doubles what a
-//! plan means between two states, with its own forward kinematics; it carries where this program puts the fingertips at some states and
+//! [`page`] turns a plan file's content, and what else is known of it ([`Extras`]), into the text of the
+//! page. The page stands alone: data, style, code and three.js (`third_party/three`) are inside, and nothing
+//! is loaded from anywhere. Its code (`assets/`) computes in doubles what a plan means between two states,
+//! with its own forward kinematics; it carries where this program puts the fingertips at some states and
 //! complains where it finds them more than a micrometre away.
 
 mod assets;

@@ -34,8 +34,9 @@ impl MeshData {
         Ok(Self::new(&mesh))
     }
 
-    /// Draws with at most `most` facets, on the finest grid that does it: the vertices of one cell become one (J. Rossignac, P. Borrel,
-    /// "Multi-resolution 3D approximations for rendering complex scenes", in Modeling in Computer Graphics, 1993).
+    /// Draws with at most `most` facets, on the finest grid that does it: the vertices of one cell become one
+    /// (J. Rossignac, P. Borrel, "Multi-resolution 3D approximations for rendering complex scenes", in
+    /// Modeling in Computer Graphics, 1993).
     fn thin(&mut self, most: usize) {
         if self.count <= most {
             return;

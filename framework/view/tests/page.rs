@@ -75,7 +75,8 @@ fn the_page_holds_the_plan_and_nothing_leaves_its_place() {
     assert_eq!(data["object"]["facets"].as_array().unwrap().len(), 3 * 80);
     assert_eq!(data["cone"]["mu"], 0.8);
     assert_eq!([&data["graph"], &data["curves"], &data["replay"]], [&Value::Null; 3]);
-    // At the first state the joints are nearly straight: the tip is above the base by the sum of the links, but for two small turns.
+    // At the first state the joints are nearly straight: the tip is above the base by the sum of the links,
+    // but for two small turns.
     let tip = &data["motion"]["checks"][0]["tips"][0];
     let height = 0.05 + 0.05 + 0.05 * 0.1_f64.cos() + 0.05 * 0.3_f64.cos();
     assert!((tip[2].as_f64().unwrap() - height).abs() < 1e-9, "{tip}");

@@ -4,10 +4,12 @@ use regrasp_api::{
     Build, Cone, Contact, ContactModel, Entry, FingerIndex, NoSettings, Settings, Slot, check_settings,
 };
 
-/// Frictionless point contact: a force along the inward normal and nothing else, whatever the friction coefficient.
+/// Frictionless point contact: a force along the inward normal and nothing else, whatever the friction
+/// coefficient.
 ///
-/// Closure then is form closure of first order; seven contacts are the fewest in space (Somov 1897; Markenscoff, Ni,
-/// Papadimitriou, "The geometry of grasping", IJRR 1990), and a sphere or any other surface of revolution has none.
+/// Closure then is form closure of first order; seven contacts are the fewest in space (Somov 1897;
+/// Markenscoff, Ni, Papadimitriou, "The geometry of grasping", IJRR 1990), and a sphere or any other surface
+/// of revolution has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Frictionless;
 
@@ -25,7 +27,8 @@ regrasp_api::inventory::submit! {
     Entry {
         id: "contact-model/frictionless",
         slots: &[Slot::ContactModel],
-        summary: "Frictionless point contact: a force along the normal only; seven contacts are the fewest that hold.",
+        summary: "Frictionless point contact: a force along the normal only; seven contacts are the fewest \
+            that hold.",
         references: &[
             "Markenscoff, Ni, Papadimitriou, The geometry of grasping, IJRR 1990",
         ],

@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 pub struct SoftFingerSettings {
     /// Torsional friction radius γ (m): the largest torque about the normal per newton of normal force.
     ///
-    /// A patch of radius a under uniform pressure gives γ = 2/3 μ a, under Hertz's pressure 3π/16 μ a. The default 0.002
-    /// is a neutral choice: what a soft tip with a patch of 4 mm radius and μ = 0.8 transmits.
+    /// A patch of radius a under uniform pressure gives γ = 2/3 μ a, under Hertz's pressure 3π/16 μ a. The
+    /// default 0.002 is a neutral choice: what a soft tip with a patch of 4 mm radius and μ = 0.8 transmits.
     #[schemars(range(min = 1e-6, max = 0.1), extend("x-unit" = "m"))]
     pub gamma: f64,
 }
@@ -26,12 +26,13 @@ impl Default for SoftFingerSettings {
 
 impl Settings for SoftFingerSettings {}
 
-/// Soft finger: friction forces and a torque about the normal that share one ellipsoid, `|f_t|²/μ² + m²/γ² ≤ f_n²`.
+/// Soft finger: friction forces and a torque about the normal that share one ellipsoid, `|f_t|²/μ² + m²/γ² ≤
+/// f_n²`.
 ///
-/// The elliptic approximation of the limit surface: Howe & Cutkosky, "Practical force-motion models for sliding
-/// manipulation", IJRR 1996. Two such contacts can hold an object, so the planner works in GS_3. The radius does not
-/// change with the friction coefficient; where a fingertip spins about its normal it transmits no torque, which is the
-/// planner's business.
+/// The elliptic approximation of the limit surface: Howe & Cutkosky, "Practical force-motion models for
+/// sliding manipulation", IJRR 1996. Two such contacts can hold an object, so the planner works in GS_3. The
+/// radius does not change with the friction coefficient; where a fingertip spins about its normal it
+/// transmits no torque, which is the planner's business.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftFinger {
     gamma: f64,
@@ -59,7 +60,8 @@ regrasp_api::inventory::submit! {
     Entry {
         id: "contact-model/soft-finger",
         slots: &[Slot::ContactModel],
-        summary: "Soft finger: friction force and torque about the normal inside one ellipsoid; two contacts can hold.",
+        summary: "Soft finger: friction force and torque about the normal inside one ellipsoid; two \
+            contacts can hold.",
         references: &[
             "Howe, Cutkosky, Practical force-motion models for sliding manipulation, IJRR 1996",
         ],

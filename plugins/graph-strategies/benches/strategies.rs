@@ -1,4 +1,5 @@
-//! One decision of each strategy, in the made-up graph of 200 nodes that it grew itself, start and goal still apart.
+//! One decision of each strategy, in the made-up graph of 200 nodes that it grew itself, start and goal still
+//! apart.
 //!
 //! The made-up graph answers `attempted` by a search, the planner's by hashing: figures are upper bounds.
 #![allow(missing_docs)]

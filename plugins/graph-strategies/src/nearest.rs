@@ -15,7 +15,8 @@ pub(crate) fn ends(graph: &dyn GraphView) -> impl Iterator<Item = NodeId> {
     std::iter::once(graph.start()).chain(graph.goals().iter().copied())
 }
 
-/// Start and goals enter the graph as new nodes do: by a path in GS_n to each component that has not been tried yet.
+/// Start and goals enter the graph as new nodes do: by a path in GS_n to each component that has not been
+/// tried yet.
 pub(crate) fn join_ends(graph: &dyn GraphView) -> Option<Action> {
     let untried = |end: NodeId| {
         nearest_of_each_component(graph, end)
@@ -54,10 +55,11 @@ pub(crate) fn nearest_in(
     measured.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, nearest)| nearest)
 }
 
-/// Two nodes of different components, the second among the `neighbours` nearest of the first, that were not tried to be joined by
-/// transfer and regrasps.
+/// Two nodes of different components, the second among the `neighbours` nearest of the first, that were not
+/// tried to be joined by transfer and regrasps.
 ///
-/// Looks at the newest node, the ends and a few random nodes: all pairs would cost the square of the graph's size at each step.
+/// Looks at the newest node, the ends and a few random nodes: all pairs would cost the square of the graph's
+/// size at each step.
 pub(crate) fn untried_pair(
     graph: &dyn GraphView,
     neighbours: usize,

@@ -1,4 +1,5 @@
-//! A transfer's step, a connection inside GS_n and a regrasp, four fingers and the sphere of the paper's problem.
+//! A transfer's step, a connection inside GS_n and a regrasp, four fingers and the sphere of the paper's
+//! problem.
 #![allow(missing_docs)]
 
 #[path = "../tests/support/mod.rs"]

@@ -19,14 +19,15 @@ pub(crate) fn wrong_target(plugin: &str, slot: Slot) -> CallError {
 
 /// How far (m) a fingertip is taken off the object to find a second place that it nearly touches.
 ///
-/// Off an edge whose facets' normals differ by θ, a second place comes closest if its gap is below 1 mm · (1 - cos θ): for each jump of
-/// the contact over more than a plan's closure the fingertip then is some micrometres to the side of where it would happen, which is what
-/// motions between two states stray. Our choice.
+/// Off an edge whose facets' normals differ by θ, a second place comes closest if its gap is below 1 mm · (1
+/// - cos θ): for each jump of the contact over more than a plan's closure the fingertip then is some
+/// micrometres to the side of where it would happen, which is what motions between two states stray. Our
+/// choice.
 const PROBE_LIFT: f64 = 1e-3;
 
-/// Whether a fingertip's ball of `radius` (m) touches here alone. In a hollow it may touch at two places, or nearly; then which of the two is the
-/// contact is a matter of rounding, and the contact may jump from one to the other.
-/// Two places closer together than half of `closure` (m) are one.
+/// Whether a fingertip's ball of `radius` (m) touches here alone. In a hollow it may touch at two places, or
+/// nearly; then which of the two is the contact is a matter of rounding, and the contact may jump from one to
+/// the other. Two places closer together than half of `closure` (m) are one.
 pub(crate) fn touches_once(surface: &dyn SurfaceParam, contact: &Contact, radius: f64, closure: f64) -> bool {
     let off = surface.project(&contact.tip_center(radius + PROBE_LIFT), Some(contact.facet)).contact;
     (off.p_OC - contact.p_OC).norm() <= 0.5 * closure
@@ -59,7 +60,8 @@ pub(crate) fn bisection(count: usize) -> impl Iterator<Item = Halving> {
     })
 }
 
-/// How far points of a finger move when one joint does: for each finger and joint the longest lever (m; 1 where prismatic).
+/// How far points of a finger move when one joint does: for each finger and joint the longest lever (m; 1
+/// where prismatic).
 #[derive(Clone, Debug)]
 pub(crate) struct Levers(Vec<FingerJoints>);
 
@@ -67,7 +69,8 @@ pub(crate) struct Levers(Vec<FingerJoints>);
 const POSTURES: usize = 256;
 
 impl Levers {
-    /// Measures the fingertip's distance from each joint's axis over many postures, and adds the fingertip's radius.
+    /// Measures the fingertip's distance from each joint's axis over many postures, and adds the fingertip's
+    /// radius.
     ///
     /// Links are taken to end no farther from an axis than the tip when it is stretched away from it.
     pub fn new(hand: &dyn Hand) -> Self {
@@ -114,15 +117,18 @@ fn longest_levers(hand: &dyn Hand, finger: FingerIndex) -> FingerJoints {
 
 /// The most (m) that a finger's points may travel between two stored states, by the bound of the levers.
 ///
-/// States keep `clearance`; what happens in between is certified by the verifier, which halves its steps where bodies move
-/// by more than that. Our choice: the bound is two to three times what the points really travel.
+/// States keep `clearance`; what happens in between is certified by the verifier, which halves its steps
+/// where bodies move by more than that. Our choice: the bound is two to three times what the points really
+/// travel.
 pub(crate) fn largest_travel(resolution: &Resolution) -> f64 {
     (12.0 * resolution.clearance).max(resolution.transfer_step)
 }
 
-/// `near` with the spare joints of the finger a fraction `s` of the way from `a` to `b`, the others as in `near`.
+/// `near` with the spare joints of the finger a fraction `s` of the way from `a` to `b`, the others as in
+/// `near`.
 ///
-/// Inverse kinematics keeps the spare joints that it is given, so a redundant finger arrives in the posture wished for.
+/// Inverse kinematics keeps the spare joints that it is given, so a redundant finger arrives in the posture
+/// wished for.
 pub(crate) fn with_spare(
     spare: &[usize],
     near: &FingerJoints,
@@ -143,7 +149,8 @@ mod tests {
     use regrasp_surfaces::geodesic::{Geodesic, GeodesicSettings};
     use regrasp_world::primitive_mesh;
 
-    /// On a ring's inner side the ball touches two facets where it is just between them, and one a tenth of a millimetre beside.
+    /// On a ring's inner side the ball touches two facets where it is just between them, and one a tenth of a
+    /// millimetre beside.
     #[test]
     fn between_two_facets_of_a_hollow_a_ball_touches_twice() {
         const RADIUS: f64 = 0.01;

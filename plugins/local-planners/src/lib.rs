@@ -1,7 +1,8 @@
-//! The built-in local planners: `linear` inside GS_n; `rolling`, `fixed-point` and (feature `rapier`) `rapier-checked` for transfers; `rrt` and `lift-slide-touch` for regrasps.
+//! The built-in local planners: `linear` inside GS_n; `rolling`, `fixed-point` and (feature `rapier`)
+//! `rapier-checked` for transfers; `rrt` and `lift-slide-touch` for regrasps.
 //!
-//! Each connects two configurations inside one kind of subspace (Sahbani, Saut, Perdereau, "An efficient algorithm for
-//! dexterous manipulation planning", SSD 2007, section IV).
+//! Each connects two configurations inside one kind of subspace (Sahbani, Saut, Perdereau, "An efficient
+//! algorithm for dexterous manipulation planning", SSD 2007, section IV).
 
 mod common;
 pub mod fixed_point;

@@ -1,10 +1,13 @@
-//! `local-planner/lift-slide-touch`: one finger lifts off, follows the geodesic, touches down; nothing is searched.
+//! `local-planner/lift-slide-touch`: one finger lifts off, follows the geodesic, touches down; nothing is
+//! searched.
 //!
-//! The regrasp that the paper's decomposition needs nearly always: the fingertip leaves its contact along the normal, its centre follows the
-//! geodesic between the two contacts at lift height, and it comes down along the new normal. A finger that starts or ends free moves its joints
-//! straight between the free posture and the lifted one. It is `local-planner/rrt` without its trees, and shares its code: what it finds, `rrt`
-//! finds with the same states. Where something bars the way it says no at once, so that a comparison shows what the search is
-//! worth: among obstacles a third of the regrasps that are needed; on free objects hardly any, and each hopeless one costs nothing.
+//! The regrasp that the paper's decomposition needs nearly always: the fingertip leaves its contact along the
+//! normal, its centre follows the geodesic between the two contacts at lift height, and it comes down along
+//! the new normal. A finger that starts or ends free moves its joints straight between the free posture and
+//! the lifted one. It is `local-planner/rrt` without its trees, and shares its code: what it finds, `rrt`
+//! finds with the same states. Where something bars the way it says no at once, so that a comparison shows
+//! what the search is worth: among obstacles a third of the regrasps that are needed; on free objects hardly
+//! any, and each hopeless one costs nothing.
 //!
 //! ```toml
 //! [plugins.local-planner.regrasp]
@@ -27,8 +30,8 @@ const ID: &str = "local-planner/lift-slide-touch";
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LiftSlideTouchSettings {
-    /// How many heights are tried at each end, evenly from the task's lift height down to its least retreat height. Default:
-    /// these two, as `local-planner/rrt`.
+    /// How many heights are tried at each end, evenly from the task's lift height down to its least retreat
+    /// height. Default: these two, as `local-planner/rrt`.
     #[schemars(range(min = 1, max = 16))]
     pub heights: usize,
 }
@@ -41,13 +44,15 @@ impl Default for LiftSlideTouchSettings {
 
 impl Settings for LiftSlideTouchSettings {}
 
-/// Moves one finger to a new contact or a free posture the direct way, the object resting in the grasp of the others.
+/// Moves one finger to a new contact or a free posture the direct way, the object resting in the grasp of the
+/// others.
 ///
-/// All or nothing, and nothing random. Refused for `stability` where the other fingers do not hold the object, `retreat` where the finger can lift
-/// off at none of the heights, otherwise for what bars the geodesic (`reach`, `collision`, `surface`).
+/// All or nothing, and nothing random. Refused for `stability` where the other fingers do not hold the
+/// object, `retreat` where the finger can lift off at none of the heights, otherwise for what bars the
+/// geodesic (`reach`, `collision`, `surface`).
 ///
-/// Source: Sahbani, Saut, Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007, section IV (regrasp paths), with the
-/// search of the finger's way left out.
+/// Source: Sahbani, Saut, Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007,
+/// section IV (regrasp paths), with the search of the finger's way left out.
 #[derive(Clone, Debug)]
 pub struct LiftSlideTouch {
     settings: LiftSlideTouchSettings,
@@ -81,9 +86,11 @@ regrasp_api::inventory::submit! {
     Entry {
         id: ID,
         slots: &[SLOT],
-        summary: "lifts the finger along the normal, follows the geodesic at lift height, touches down; no search",
+        summary: "lifts the finger along the normal, follows the geodesic at lift height, touches down; no \
+            search",
         references: &[
-            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007",
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation \
+                planning, SSD 2007",
         ],
         schema: LiftSlideTouchSettings::schema,
         check: check_settings::<LiftSlideTouchSettings>,

@@ -17,8 +17,9 @@ const SLOT: Slot = Slot::GraspPlanner;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LinearSettings {
-    /// Largest change of a joint (rad; m where prismatic) from one state to the next: more is a jump to another branch of
-    /// the inverse kinematics. Our choice: close to a stretched finger a step of 1.5 mm turns the joint by 0.3 rad.
+    /// Largest change of a joint (rad; m where prismatic) from one state to the next: more is a jump to
+    /// another branch of the inverse kinematics. Our choice: close to a stretched finger a step of 1.5 mm
+    /// turns the joint by 0.3 rad.
     #[schemars(range(min = 0.01, max = 3.0), extend("x-unit" = "rad; m where prismatic"))]
     pub joint_jump: f64,
 }
@@ -31,13 +32,14 @@ impl Default for LinearSettings {
 
 impl Settings for LinearSettings {}
 
-/// Joins two configurations of GS_n: the pose moves straight, every contact slides along its geodesic, inverse kinematics
-/// closes the chains, free fingers move their joints straight.
+/// Joins two configurations of GS_n: the pose moves straight, every contact slides along its geodesic,
+/// inverse kinematics closes the chains, free fingers move their joints straight.
 ///
-/// All or nothing. A look at three places with guessed contacts refuses most of what would fail. The states of other paths are checked
-/// coarse to fine, because a path that fails mostly fails in a stretch of many steps. What is stored cannot be executed
-/// (contacts slide, possibly across sharp edges); it is what decomposition aims at
-/// (Sahbani, Saut, Perdereau, SSD 2007, section IV.B; the reduction property is that of Alami, Siméon, Laumond, ISRR 1989).
+/// All or nothing. A look at three places with guessed contacts refuses most of what would fail. The states
+/// of other paths are checked coarse to fine, because a path that fails mostly fails in a stretch of many
+/// steps. What is stored cannot be executed (contacts slide, possibly across sharp edges); it is what
+/// decomposition aims at (Sahbani, Saut, Perdereau, SSD 2007, section IV.B; the reduction property is that of
+/// Alami, Siméon, Laumond, ISRR 1989).
 #[derive(Clone, Debug)]
 pub struct Linear {
     settings: LinearSettings,
@@ -143,14 +145,15 @@ impl Linear {
     }
 }
 
-/// Where a path is looked at before its geodesics are laid: the middle first, where most of those that fail do.
+/// Where a path is looked at before its geodesics are laid: the middle first, where most of those that fail
+/// do.
 const LOOKS: [f64; 3] = [0.5, 0.25, 0.75];
 
 /// What seems to be in the way, with the contacts guessed.
 ///
-/// A heuristic: four geodesics cost as much as dozens of looks, and most paths fail. One in thirty of the paths that would succeed is
-/// refused (ring and bracket: one in twenty), and of those that fail nine in ten with ball and ellipsoid, a third to two thirds with
-/// bracket and ring, one in ten with the cube.
+/// A heuristic: four geodesics cost as much as dozens of looks, and most paths fail. One in thirty of the
+/// paths that would succeed is refused (ring and bracket: one in twenty), and of those that fail nine in ten
+/// with ball and ellipsoid, a third to two thirds with bracket and ring, one in ten with the cube.
 fn foreseen(
     task: &Task<'_>,
     (from, to): (&Configuration, &Configuration),
@@ -178,7 +181,8 @@ fn foreseen(
     None
 }
 
-/// A guess at the contact a fraction `s` of the way from `a` to `b`: exact on a ball; `None` where the two lie nearly opposite.
+/// A guess at the contact a fraction `s` of the way from `a` to `b`: exact on a ball; `None` where the two
+/// lie nearly opposite.
 fn guess(task: &Task<'_>, (a, b): (&Contact, &Contact), s: f64) -> Option<Contact> {
     let n_O = (a.n_O * (1.0 - s) + b.n_O * s).try_normalize(0.1)?;
     // Far enough out to lie outside of most objects, where projecting is quick.
@@ -263,9 +267,11 @@ regrasp_api::inventory::submit! {
     Entry {
         id: ID,
         slots: &[SLOT],
-        summary: "pose and free joints move straight, contacts slide along geodesics, inverse kinematics closes the chains",
+        summary: "pose and free joints move straight, contacts slide along geodesics, inverse kinematics \
+            closes the chains",
         references: &[
-            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007",
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation \
+                planning, SSD 2007",
         ],
         schema: LinearSettings::schema,
         check: check_settings::<LinearSettings>,

@@ -162,7 +162,8 @@ fn on_a_sphere_the_fingertip_flies_its_arc_at_lift_height() {
 
 #[test]
 fn random_trees_find_the_way_past_an_obstacle() {
-    let bar = "[[obstacle]]\nshape = { kind = \"capsule\", from = [-0.02, 0.034, 0.034], to = [0.02, 0.034, 0.034], radius = 0.006 }";
+    let bar = "[[obstacle]]\nshape = { kind = \"capsule\", from = [-0.02, 0.034, 0.034], to = [0.02, 0.034, \
+        0.034], radius = 0.006 }";
     let (bench, from) = around_a_ball(bar);
     let (contact, joints) = touch(&bench, Vec3::z());
     let target = Target::Regrasp { finger: FINGER, contact: Some(&contact), joints: &joints };
@@ -256,7 +257,8 @@ fn without_trees_the_direct_way_is_that_of_rrt_and_what_is_barred_stays_barred()
 
 #[test]
 fn more_heights_lift_a_finger_that_the_full_height_bars() {
-    // A shelf above the fingertip, 6 mm over the ball that stands on the object: 8 mm are barred, 3 mm and what lies between are not.
+    // A shelf above the fingertip, 6 mm over the ball that stands on the object: 8 mm are barred, 3 mm and
+    // what lies between are not.
     let at = |shelf: f64| ObstacleDescription {
         name: "shelf".into(),
         shape: Shape::HalfSpace { normal: [0.0, -1.0, 0.0], offset: -shelf },

@@ -62,8 +62,8 @@ fn random_transfers_keep_half_of_every_tolerance() {
     }
 }
 
-/// A ring's inner side is concave one way and convex the other: while a tip turns about an edge, its contact may jump over
-/// another, and moves no farther than its centre all the same.
+/// A ring's inner side is concave one way and convex the other: while a tip turns about an edge, its contact
+/// may jump over another, and moves no farther than its centre all the same.
 #[test]
 fn contacts_on_a_ring_do_not_jump_while_they_turn() {
     let bench = support::Bench::new(support::four_finger(), support::ring());
@@ -131,7 +131,8 @@ fn an_object_that_does_not_turn_keeps_its_contacts() {
 
 #[test]
 fn on_an_edge_the_normal_turns_and_the_point_stays() {
-    // A quarter turn rolls 15.7 mm on a face of 10 mm: past the edge, where 45 mm faces give 12.5 mm away from it.
+    // A quarter turn rolls 15.7 mm on a face of 10 mm: past the edge, where 45 mm faces give 12.5 mm away
+    // from it.
     let (bench, from) =
         around_the_equator(support::object("{ kind = \"cuboid\", size = [0.02, 0.02, 0.06] }"));
     let angle = 1.5;

@@ -1,4 +1,5 @@
-//! One sample of each sampler with the paper's parts: anywhere, and at a prescribed pose; four fingers, sphere and cube.
+//! One sample of each sampler with the paper's parts: anywhere, and at a prescribed pose; four fingers,
+//! sphere and cube.
 //!
 //! A call that finds nothing counts too; how many of a hundred do is part of the name.
 #![allow(missing_docs)]

@@ -12,7 +12,8 @@ pub(crate) fn at_rest(task: &Task<'_>, X_HO: Pose) -> Configuration {
     }
 }
 
-/// Closes the chains for given contacts by the hand's inverse kinematics; `None`, and a reason counted, if a finger cannot reach.
+/// Closes the chains for given contacts by the hand's inverse kinematics; `None`, and a reason counted, if a
+/// finger cannot reach.
 pub(crate) fn close(
     task: &Task<'_>,
     X_HO: &Pose,
@@ -33,7 +34,8 @@ pub(crate) fn close(
     Some(q)
 }
 
-/// Whether an object of this radius (m, about its origin) at the pose comes near the finger: a look that saves tries where none helps.
+/// Whether an object of this radius (m, about its origin) at the pose comes near the finger: a look that
+/// saves tries where none helps.
 pub(crate) fn may_reach(task: &Task<'_>, X_HO: &Pose, finger: FingerIndex, radius: f64) -> bool {
     let model = task.hand.finger(finger);
     let most = model.reach + radius + task.hand.fingertip_radius();

@@ -5,7 +5,8 @@ use regrasp_api::{Pose, PoseRequest, Random, Rotation, Task, Vec3, slerp};
 /// How poses anywhere are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PoseLaw {
-    /// The fraction of poses drawn with any orientation; the others are drawn near the motion from start to goal.
+    /// The fraction of poses drawn with any orientation; the others are drawn near the motion from start to
+    /// goal.
     pub anywhere: f64,
     /// How far the latter may turn away from that motion (rad).
     pub spread: f64,
@@ -40,7 +41,8 @@ fn anywhere(task: &Task<'_>, law: &PoseLaw, random: &mut Random) -> Pose {
     Pose::from_parts(p.into(), R_HO)
 }
 
-/// `R` turned by up to `angle` rad about a random axis, the turns spread evenly over the ball of rotation vectors.
+/// `R` turned by up to `angle` rad about a random axis, the turns spread evenly over the ball of rotation
+/// vectors.
 fn turned(R: &Rotation, angle: f64, random: &mut Random) -> Rotation {
     Rotation::from_scaled_axis(random.direction() * (angle * random.unit().cbrt())) * R
 }

@@ -58,7 +58,8 @@ proptest! {
                 let task = bench.task();
                 let found = sampler.sample(&task, PoseRequest::Anywhere, FingerSet::first(4), &mut context(seed)).unwrap();
                 let Some(q) = found else { continue };
-                prop_assert!(gaps(bench, &q).into_iter().all(|gap| gap < 1e-9), "{}: {:?}", name, gaps(bench, &q));
+                prop_assert!(gaps(bench, &q).into_iter().all(|gap| gap < 1e-9), "{}: \
+                    {:?}", name, gaps(bench, &q));
                 prop_assert!(q.joints.iter().all(|(finger, joints)| task.hand.within_limits(finger, joints)));
                 prop_assert_eq!(task.admissible.admit(&task, &q, &mut context(0)).unwrap(), None);
                 // Closing what was sampled gives the same joints back.
@@ -83,7 +84,8 @@ proptest! {
             let Some(q) = found else { continue };
             let moved = (q.X_HO.translation.vector - near.X_HO.translation.vector).norm();
             let turned = angle_between(&q.X_HO.rotation, &near.X_HO.rotation);
-            prop_assert!(moved <= radius + 1e-12 && turned <= angle + 1e-9, "{}: {} m, {} rad", name, moved, turned);
+            prop_assert!(moved <= radius + 1e-12 && turned <= angle + 1e-9, "{}: {} m, {} \
+                rad", name, moved, turned);
         }
     }
 }

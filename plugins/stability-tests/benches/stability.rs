@@ -1,7 +1,8 @@
-//! Cost of one stability question: exact force closure cold and warm, which fingers may be lifted, cones of edges, the wrench ball,
-//! equilibrium, the conic reference.
+//! Cost of one stability question: exact force closure cold and warm, which fingers may be lifted, cones of
+//! edges, the wrench ball, equilibrium, the conic reference.
 //!
-//! Each figure is the mean over a fixed set of grasps of a size of a few centimetres, about half of them closed.
+//! Each figure is the mean over a fixed set of grasps of a size of a few centimetres, about half of them
+//! closed.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use regrasp_api::{

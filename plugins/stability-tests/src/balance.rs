@@ -1,4 +1,5 @@
-//! Contact forces that balance a given load inside cones and under a bound of the normal forces: Newton's method to their analytic centre.
+//! Contact forces that balance a given load inside cones and under a bound of the normal forces: Newton's
+//! method to their analytic centre.
 
 use crate::closure::{Factor, Symmetric6};
 use crate::contacts::{ScaledContact, ScaledGrasp, Twist};
@@ -10,12 +11,14 @@ const MAX_STEPS: usize = 80;
 const SHY: f64 = 0.9;
 /// Newton decrement at which a centre is near enough.
 const CENTRED: f64 = 0.5;
-/// Room that an accepted force keeps to the boundary of its cone and to the bound, of the largest normal force.
+/// Room that an accepted force keeps to the boundary of its cone and to the bound, of the largest normal
+/// force.
 const ROOM: f64 = 1e-9;
 /// Pivots of the grasp map's square at or below this mean that its rank is not surely 6.
 const FLAT: f64 = 1e-12;
 
-/// One contact's force, the largest allowed normal force as unit: f_n = normal, f_t = μ tangential, m = γ spin.
+/// One contact's force, the largest allowed normal force as unit: f_n = normal, f_t = μ tangential, m = γ
+/// spin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Force {
     pub normal: f64,
@@ -116,7 +119,8 @@ impl Barrier {
         }
     }
 
-    /// The inverse Hessian times `c`: x xᵀ - (q/2) diag(1, -1, -1, -1), less the second term by Sherman and Morrison.
+    /// The inverse Hessian times `c`: x xᵀ - (q/2) diag(1, -1, -1, -1), less the second term by Sherman and
+    /// Morrison.
     #[inline]
     fn inverse(&self, c: &Force) -> Force {
         let (along, half) = (self.at.dot(c), 0.5 * self.q);
@@ -198,8 +202,8 @@ impl<'a> Balance<'a> {
         self.search(*from, wanted, false)
     }
 
-    /// Newton's method from forces inside that need not balance (Boyd & Vandenberghe, "Convex Optimization", 2004, section 10.3), with 6×6
-    /// systems G H⁻¹ Gᵀ.
+    /// Newton's method from forces inside that need not balance (Boyd & Vandenberghe, "Convex Optimization",
+    /// 2004, section 10.3), with 6×6 systems G H⁻¹ Gᵀ.
     fn search(&self, mut forces: Forces, wanted: &Twist, centred: bool) -> Balanced {
         let mut feasible = false;
         for _ in 0..MAX_STEPS {
@@ -243,7 +247,8 @@ impl<'a> Balance<'a> {
         step
     }
 
-    /// Whether all contacts together have less power on `w` than `wanted`: what is wanted is outside the forces' wrenches.
+    /// Whether all contacts together have less power on `w` than `wanted`: what is wanted is outside the
+    /// forces' wrenches.
     fn cannot(&self, w: &Twist, wanted: &Twist) -> bool {
         let most: f64 = self.grasp.contacts().iter().map(|contact| contact.support(w).max(0.0)).sum();
         wanted.dot(w) > most + 1e-12 * w.norm()
@@ -279,7 +284,8 @@ struct Step {
 }
 
 impl Response<'_> {
-    /// The forces after a change of what is wanted, by the linear response H⁻¹Gᵀ(G H⁻¹Gᵀ)⁻¹, if they are strictly inside.
+    /// The forces after a change of what is wanted, by the linear response H⁻¹Gᵀ(G H⁻¹Gᵀ)⁻¹, if they are
+    /// strictly inside.
     #[inline]
     pub fn absorbs(&self, change: &Twist) -> bool {
         let w = Twist::from_array(self.factor.solve(change.to_array()));

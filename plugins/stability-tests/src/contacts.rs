@@ -2,7 +2,8 @@
 
 use regrasp_api::{CallError, Cone, FingerIndex, Grasp, GraspContact, MAX_FINGERS, Vec3};
 
-/// A twist, or a covector of wrenches, in scaled coordinates: `a` goes with forces, `b` with torques divided by length.
+/// A twist, or a covector of wrenches, in scaled coordinates: `a` goes with forces, `b` with torques divided
+/// by length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Twist {
     /// Linear velocity of the point at the contacts' centroid, in O.
@@ -77,8 +78,8 @@ impl ScaledContact {
     }
 }
 
-/// The three contacts of `grasp` except that of `lifted`, inward normals, neither centred nor scaled; `None` if there are not three with
-/// elliptic cones.
+/// The three contacts of `grasp` except that of `lifted`, inward normals, neither centred nor scaled; `None`
+/// if there are not three with elliptic cones.
 pub(crate) fn three_of(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Option<[ScaledContact; 3]> {
     let mut left = grasp.contacts().iter().filter(|contact| Some(contact.finger) != lifted);
     let mut next = || match left.next() {
@@ -97,7 +98,8 @@ pub(crate) fn is_round(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> bool {
     grasp.contacts().iter().all(|contact| Some(contact.finger) == lifted || round(contact))
 }
 
-/// Contacts closer together than this share of their distance from O's origin are one point: their differences are rounding.
+/// Contacts closer together than this share of their distance from O's origin are one point: their
+/// differences are rounding.
 const COINCIDENT: f64 = 1e-9;
 
 /// The contacts of a grasp about their centroid c, lengths divided by L = max |p - c|.
@@ -114,7 +116,8 @@ pub(crate) struct ScaledGrasp {
 }
 
 impl ScaledGrasp {
-    /// The contacts of `grasp` except those of `lifted`; where a cone is not elliptic `plugin` is named, and what to use in place of it.
+    /// The contacts of `grasp` except those of `lifted`; where a cone is not elliptic `plugin` is named, and
+    /// what to use in place of it.
     pub fn gather(
         grasp: &Grasp<'_>,
         lifted: Option<FingerIndex>,
@@ -131,7 +134,8 @@ impl ScaledGrasp {
         Ok(scaled)
     }
 
-    /// The contacts of `grasp` except those of `lifted`, whatever their cones: a polyhedral one is put down as frictionless.
+    /// The contacts of `grasp` except those of `lifted`, whatever their cones: a polyhedral one is put down
+    /// as frictionless.
     pub fn gather_points(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Self {
         let nothing = ScaledContact { r: Vec3::zeros(), n: Vec3::zeros(), mu: 0.0, gamma: 0.0 };
         let mut scaled =
@@ -189,13 +193,19 @@ impl ScaledGrasp {
     }
 }
 
-/// What to use where cones are polyhedral; the tests that take them are no substitute for `equilibrium`, which alone weighs a load.
+/// The id of the test that weighs a load.
+pub(crate) const EQUILIBRIUM: &str = "stability-test/equilibrium";
+
+/// What to use where cones are polyhedral; the tests that take them are no substitute for `equilibrium`,
+/// which alone weighs a load.
 fn instead(plugin: &str) -> &'static str {
-    if plugin == crate::equilibrium::ID {
-        "use an elliptic contact model, such as `contact-model/pcwf` or `contact-model/soft-finger`; `stability-test/force-closure` \
+    if plugin == EQUILIBRIUM {
+        "use an elliptic contact model, such as `contact-model/pcwf` or `contact-model/soft-finger`; \
+            `stability-test/force-closure` \
          takes polyhedral cones, but asks for closure, whatever the load"
     } else {
-        "use an elliptic contact model, or `stability-test/force-closure`, which takes polyhedral cones as they are"
+        "use an elliptic contact model, or `stability-test/force-closure`, which takes polyhedral cones as \
+            they are"
     }
 }
 

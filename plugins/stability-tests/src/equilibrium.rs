@@ -9,7 +9,7 @@ use regrasp_api::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub(crate) const ID: &str = "stability-test/equilibrium";
+pub(crate) const ID: &str = crate::contacts::EQUILIBRIUM;
 /// How far apart the bounds of a reported margin are, relative to the factor.
 const MARGIN_GAP: f64 = 0.005;
 /// The largest factor of the disturbances that a margin tells of.
@@ -42,22 +42,27 @@ impl Default for EquilibriumSettings {
 
 impl Settings for EquilibriumSettings {}
 
-/// Stable where contact forces inside the cones, with normal parts up to a bound, hold the object's weight and every disturbance of a set.
+/// Stable where contact forces inside the cones, with normal parts up to a bound, hold the object's weight
+/// and every disturbance of a set.
 ///
-/// For the weight alone and for the weight with each of the 24 wrenches that [`Load`] describes (they enclose all forces up to
-/// `disturbance_force` at the centre of mass, all torques up to `disturbance_torque`, and mixtures), some forces must balance it: then,
-/// cones being convex, everything between is balanced too. Elliptic cones are taken exactly. Forces are found by Newton's method to the
-/// analytic centre of those that balance the weight, an interior-point form of the grasp-force problem of Han, Trinkle, Li, "Grasp analysis as
-/// linear matrix inequality problems", T-RA 2000, and Boyd & Wegbreit, "Fast computation of optimal contact forces", T-RO 2007. The
-/// centre's linear response is tried for all 24 first; where it leaves a cone, Newton goes on from there. A yes is proved by forces strictly
-/// inside, a no by a twist on which all contacts together have too little power; neither gives [`Stability::Undecided`].
+/// For the weight alone and for the weight with each of the 24 wrenches that [`Load`] describes (they enclose
+/// all forces up to `disturbance_force` at the centre of mass, all torques up to `disturbance_torque`, and
+/// mixtures), some forces must balance it: then, cones being convex, everything between is balanced too.
+/// Elliptic cones are taken exactly. Forces are found by Newton's method to the analytic centre of those that
+/// balance the weight, an interior-point form of the grasp-force problem of Han, Trinkle, Li, "Grasp analysis
+/// as linear matrix inequality problems", T-RA 2000, and Boyd & Wegbreit, "Fast computation of optimal
+/// contact forces", T-RO 2007. The centre's linear response is tried for all 24 first; where it leaves a
+/// cone, Newton goes on from there. A yes is proved by forces strictly inside, a no by a twist on which all
+/// contacts together have too little power; neither gives [`Stability::Undecided`].
 ///
-/// Unlike closure the verdict depends on the object's orientation (gravity in its frame), mass and centre of mass: a grasp, and which of its
-/// fingers may be lifted, may be stable in one pose and not in another, and a grasp that closes nothing may carry the object from below.
-/// Verdicts are monotone in friction, in `max_normal_force` and in added contacts. Where no gravity is given, closure is needed.
+/// Unlike closure the verdict depends on the object's orientation (gravity in its frame), mass and centre of
+/// mass: a grasp, and which of its fingers may be lifted, may be stable in one pose and not in another, and a
+/// grasp that closes nothing may carry the object from below. Verdicts are monotone in friction, in
+/// `max_normal_force` and in added contacts. Where no gravity is given, closure is needed.
 ///
-/// The margin is the factor by which all disturbances may grow, less 1 (no unit; at most 1e6); `length` and `center_O` of
-/// [`StabilityTest::assess`] have no effect. The certificate of a stable grasp is the forces (N) that balance the weight alone.
+/// The margin is the factor by which all disturbances may grow, less 1 (no unit; at most 1e6); `length` and
+/// `center_O` of [`StabilityTest::assess`] have no effect. The certificate of a stable grasp is the forces
+/// (N) that balance the weight alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equilibrium {
     settings: EquilibriumSettings,
@@ -107,7 +112,8 @@ impl Equilibrium {
         }
     }
 
-    /// The factor by which the disturbances may grow: bounds, the upper one infinite where it is above [`MOST`].
+    /// The factor by which the disturbances may grow: bounds, the upper one infinite where it is above
+    /// [`MOST`].
     fn factor(&self, scaled: &ScaledGrasp, g_O: &Vec3) -> (f64, f64) {
         let holds = |factor: f64| self.decide(scaled, g_O, factor).is_stable();
         let (mut low, mut high) = (0.0, 1.0);
@@ -228,7 +234,8 @@ regrasp_api::inventory::submit! {
     Entry {
         id: ID,
         slots: &[Slot::StabilityTest],
-        summary: "Bounded contact forces hold the object's weight and a set of disturbances; depends on the object's pose.",
+        summary: "Bounded contact forces hold the object's weight and a set of disturbances; depends on the \
+            object's pose.",
         references: &[
             "Han, Trinkle, Li, Grasp analysis as linear matrix inequality problems, T-RA 2000",
             "Boyd, Wegbreit, Fast computation of optimal contact forces, T-RO 2007",

@@ -19,7 +19,8 @@ const MARGIN_GAP: f64 = 0.005;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LinearisedSettings {
-    /// Edges of a cone, default 8 as is usual in grasp planning; a soft finger has as many on its equator and more on the way to its poles.
+    /// Edges of a cone, default 8 as is usual in grasp planning; a soft finger has as many on its equator and
+    /// more on the way to its poles.
     #[schemars(range(min = 3, max = 64))]
     pub edges: usize,
 }
@@ -32,19 +33,23 @@ impl Default for LinearisedSettings {
 
 impl Settings for LinearisedSettings {}
 
-/// Force closure with every round cone replaced by m edges on its surface; cones that come as edges are taken as they are.
+/// Force closure with every round cone replaced by m edges on its surface; cones that come as edges are taken
+/// as they are.
 ///
-/// A grasp is closed where its edges' wrenches span the space of wrenches positively: the linear feasibility problem that grasp planners have
-/// solved since Kerr & Roth, "Analysis of multifingered hands", IJRR 1986, and Liu, "Qualitative test and force optimization of 3-D frictional
-/// form-closure grasps using linear programming", T-RA 1999. It is solved by an active-set method on fixed-size arrays, an edge at a time,
+/// A grasp is closed where its edges' wrenches span the space of wrenches positively: the linear feasibility
+/// problem that grasp planners have solved since Kerr & Roth, "Analysis of multifingered hands", IJRR 1986,
+/// and Liu, "Qualitative test and force optimization of 3-D frictional form-closure grasps using linear
+/// programming", T-RA 1999. It is solved by an active-set method on fixed-size arrays, an edge at a time,
 /// each found in closed form.
 ///
-/// The edges lie *on* the cone, so a yes is a yes for the round cone too (its certificate is a force strictly inside it), and some grasps near
-/// the boundary are missed: the friction that a grasp needs is overestimated by up to 1/cos(π/m) - 1, 8 % for 8 edges and 2 % for 16.
-/// A soft finger's ellipsoid has edges at m longitudes and about m/2 latitudes. Polyhedral cones are decided exactly. Where the first edge
-/// points follows the object's frame, so within those few percent a verdict may change with it.
+/// The edges lie *on* the cone, so a yes is a yes for the round cone too (its certificate is a force strictly
+/// inside it), and some grasps near the boundary are missed: the friction that a grasp needs is overestimated
+/// by up to 1/cos(π/m) - 1, 8 % for 8 edges and 2 % for 16. A soft finger's ellipsoid has edges at m
+/// longitudes and about m/2 latitudes. Polyhedral cones are decided exactly. Where the first edge points
+/// follows the object's frame, so within those few percent a verdict may change with it.
 ///
-/// The margin is Q1, the depth of the origin in the hull of all edges' wrenches, in the frame that [`crate::ForceClosure`] uses.
+/// The margin is Q1, the depth of the origin in the hull of all edges' wrenches, in the frame that
+/// [`crate::ForceClosure`] uses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearised {
     ring: Ring,
@@ -134,10 +139,12 @@ regrasp_api::inventory::submit! {
     Entry {
         id: ID,
         slots: &[Slot::StabilityTest],
-        summary: "Force closure with cones of m edges, from inside: a linear feasibility problem; takes polyhedral cones.",
+        summary: "Force closure with cones of m edges, from inside: a linear feasibility problem; takes \
+            polyhedral cones.",
         references: &[
             "Kerr, Roth, Analysis of multifingered hands, IJRR 1986",
-            "Liu, Qualitative test and force optimization of 3-D frictional form-closure grasps using linear programming, T-RA 1999",
+            "Liu, Qualitative test and force optimization of 3-D frictional form-closure grasps using \
+                linear programming, T-RA 1999",
             "Lawson, Hanson, Solving Least Squares Problems, Prentice-Hall 1974, chapter 23",
         ],
         schema: LinearisedSettings::schema,

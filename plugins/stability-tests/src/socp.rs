@@ -17,7 +17,8 @@ const ID: &str = "stability-test/socp";
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SocpSettings {
-    /// Slacks t (no unit) below this in absolute value are left undecided; default 1e-8, where the solver's sign becomes noise.
+    /// Slacks t (no unit) below this in absolute value are left undecided; default 1e-8, where the solver's
+    /// sign becomes noise.
     #[schemars(range(min = 1e-9, max = 0.1), extend("x-unit" = "1"))]
     pub undecided_slack: f64,
     /// Smallest singular value of the scaled grasp map (no unit) that counts as rank 6; default 1e-9.
@@ -33,16 +34,18 @@ impl Default for SocpSettings {
 
 impl Settings for SocpSettings {}
 
-/// Force closure as a second-order cone program: maximise t with G f = 0, Σ f_n = 1 and f_n - t ≥ |(f_t/μ, m/γ)| at every contact.
+/// Force closure as a second-order cone program: maximise t with G f = 0, Σ f_n = 1 and f_n - t ≥ |(f_t/μ,
+/// m/γ)| at every contact.
 ///
-/// Closed where t > 0 and the scaled grasp map has rank 6. The formulation of Han, Trinkle, Li, "Grasp analysis as linear matrix inequality
-/// problems", T-RA 2000, as cones (Lobo, Vandenberghe, Boyd, Lebret, "Applications of second-order cone programming", 1998), solved by the
-/// interior-point method of Goulart & Chen, "Clarabel", 2024. A few hundred times the cost of `stability-test/force-closure`, and
-/// independent of it: the reference.
+/// Closed where t > 0 and the scaled grasp map has rank 6. The formulation of Han, Trinkle, Li, "Grasp
+/// analysis as linear matrix inequality problems", T-RA 2000, as cones (Lobo, Vandenberghe, Boyd, Lebret,
+/// "Applications of second-order cone programming", 1998), solved by the interior-point method of Goulart &
+/// Chen, "Clarabel", 2024. A few hundred times the cost of `stability-test/force-closure`, and independent of
+/// it: the reference.
 ///
-/// The margin is t: the largest force, as a share of the sum of the normal forces, by which every contact stays inside its cone. It takes
-/// torques about the contacts' centroid and does not depend on a length, so `length` and `center_O` of
-/// [`StabilityTest::assess`] have no effect on it.
+/// The margin is t: the largest force, as a share of the sum of the normal forces, by which every contact
+/// stays inside its cone. It takes torques about the contacts' centroid and does not depend on a length, so
+/// `length` and `center_O` of [`StabilityTest::assess`] have no effect on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Socp {
     settings: SocpSettings,
@@ -127,7 +130,8 @@ struct Solution {
     twist: Twist,
 }
 
-/// How many components a contact's force has: normal, two tangential if μ > 0, torsional if γ > 0, the last three over μ and γ.
+/// How many components a contact's force has: normal, two tangential if μ > 0, torsional if γ > 0, the last
+/// three over μ and γ.
 fn components(contact: &ScaledContact) -> usize {
     1 + 2 * usize::from(contact.mu > 0.0) + usize::from(contact.gamma > 0.0)
 }
@@ -158,7 +162,8 @@ fn has_full_rank(grasp_map: &DMatrix<f64>, tolerance: f64) -> bool {
 
 /// Solves max t with G f = 0, Σ f_n = 1, (f_n - t, f_u) in every cone, in the variables (f, t).
 ///
-/// Clarabel's form is A x + s = b with s in a product of cones: six zeros and one for the equations, then one cone a contact.
+/// Clarabel's form is A x + s = b with s in a product of cones: six zeros and one for the equations, then one
+/// cone a contact.
 fn solve(grasp: &ScaledGrasp, grasp_map: &DMatrix<f64>) -> Result<Solution, CallError> {
     let size = grasp_map.ncols();
     let mut A = DMatrix::<f64>::zeros(7 + size, size + 1);
@@ -185,7 +190,8 @@ fn solve(grasp: &ScaledGrasp, grasp_map: &DMatrix<f64>) -> Result<Solution, Call
     optimum(&compressed(&A), &b, &cost, &cones)
 }
 
-/// The optimum to the precision that the sign of t needs, or, on a degenerate grasp, to the solver's usual one.
+/// The optimum to the precision that the sign of t needs, or, on a degenerate grasp, to the solver's usual
+/// one.
 fn optimum(
     A: &CscMatrix<f64>,
     b: &[f64],
@@ -291,7 +297,8 @@ fn internal_force(grasp: &ScaledGrasp, forces: &DVector<f64>) -> Certificate {
     Certificate::InternalForce { forces_O, torsions }
 }
 
-/// The program's multipliers, or a twist in the null space of Gᵀ, where arithmetic confirms that no contact resists it.
+/// The program's multipliers, or a twist in the null space of Gᵀ, where arithmetic confirms that no contact
+/// resists it.
 fn separating_twist(grasp: &ScaledGrasp, solution: &Solution, grasp_map: &DMatrix<f64>) -> Certificate {
     let square = grasp_map * grasp_map.transpose();
     let eigen = square.symmetric_eigen();
@@ -311,11 +318,14 @@ regrasp_api::inventory::submit! {
     Entry {
         id: ID,
         slots: &[Slot::StabilityTest],
-        summary: "Force closure as a second-order cone program (Clarabel): slow and independent, the reference.",
+        summary: "Force closure as a second-order cone program (Clarabel): slow and independent, the \
+            reference.",
         references: &[
             "Han, Trinkle, Li, Grasp analysis as linear matrix inequality problems, T-RA 2000",
-            "Lobo, Vandenberghe, Boyd, Lebret, Applications of second-order cone programming, Linear Algebra and its Applications, 1998",
-            "Goulart, Chen, Clarabel: an interior-point solver for conic programs with quadratic objectives, arXiv 2405.12762, 2024",
+            "Lobo, Vandenberghe, Boyd, Lebret, Applications of second-order cone programming, Linear \
+                Algebra and its Applications, 1998",
+            "Goulart, Chen, Clarabel: an interior-point solver for conic programs with quadratic \
+                objectives, arXiv 2405.12762, 2024",
         ],
         schema: SocpSettings::schema,
         check: check_settings::<SocpSettings>,

@@ -1,4 +1,5 @@
-//! Whether wrenches span all of wrench space positively: nonnegative least squares with the columns generated when they are wanted.
+//! Whether wrenches span all of wrench space positively: nonnegative least squares with the columns generated
+//! when they are wanted.
 
 use crate::closure::{Factor, Symmetric6};
 use crate::contacts::Twist;
@@ -30,7 +31,8 @@ pub(crate) enum Span {
     Undecided,
 }
 
-/// Forces that balance: one unit of every contact's inner wrench, weights on extreme ones, and the correction Gᵀd of all.
+/// Forces that balance: one unit of every contact's inner wrench, weights on extreme ones, and the correction
+/// Gᵀd of all.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Balance {
     /// The weighted extreme wrenches.
@@ -41,11 +43,13 @@ pub(crate) struct Balance {
     pub correction: Twist,
 }
 
-/// Looks for a proof: inner forces plus extreme ones with weights of at least 0 that balance, or a twist that no contact pushes along.
+/// Looks for a proof: inner forces plus extreme ones with weights of at least 0 that balance, or a twist that
+/// no contact pushes along.
 ///
-/// After Lawson & Hanson, "Solving Least Squares Problems", 1974, chapter 23: least squares over the active wrenches, whose remainder says
-/// which wrench to take in next. That one is found in closed form, so the linear program's columns are never listed. As the inner forces
-/// can be pushed a little without leaving their cones, the search ends as soon as what remains is that little: often at once.
+/// After Lawson & Hanson, "Solving Least Squares Problems", 1974, chapter 23: least squares over the active
+/// wrenches, whose remainder says which wrench to take in next. That one is found in closed form, so the
+/// linear program's columns are never listed. As the inner forces can be pushed a little without leaving
+/// their cones, the search ends as soon as what remains is that little: often at once.
 pub(crate) fn span(set: &WrenchSet<'_>) -> Span {
     let (M, sum) = square(set);
     let factor = M.factor(FLAT);
@@ -74,8 +78,8 @@ pub(crate) fn span(set: &WrenchSet<'_>) -> Span {
     Span::Undecided
 }
 
-/// M = C Cᵀ over the columns by which the inner forces can be pushed (1, μ, μ, γ times the units; a polyhedral cone's edges over their
-/// number), and the sum of the inner wrenches.
+/// M = C Cᵀ over the columns by which the inner forces can be pushed (1, μ, μ, γ times the units; a
+/// polyhedral cone's edges over their number), and the sum of the inner wrenches.
 fn square(set: &WrenchSet<'_>) -> (Symmetric6, Twist) {
     let (mut M, _) = crate::closure::PolarBody { grasp: &set.grasp }.grasp_map_square();
     let mut sum = Twist::ZERO;
@@ -93,7 +97,8 @@ fn square(set: &WrenchSet<'_>) -> (Symmetric6, Twist) {
     (M, sum)
 }
 
-/// The twist d whose push Cᵀd of the inner forces makes up for `remainder` and leaves them inside; `None` if there is none.
+/// The twist d whose push Cᵀd of the inner forces makes up for `remainder` and leaves them inside; `None` if
+/// there is none.
 fn absorbs(set: &WrenchSet<'_>, factor: &Factor, remainder: &Twist) -> Option<Twist> {
     let d = Twist::from_array(factor.solve(remainder.to_array()));
     let inside = (0..set.contacts().len()).all(|i| push_stays_inside(set, i, &d));
@@ -150,7 +155,8 @@ fn push_force(set: &WrenchSet<'_>, i: usize, d: &Twist) -> Extreme {
     force
 }
 
-/// The balance, if it holds for the forces as they are and not only for the factors that they were found with.
+/// The balance, if it holds for the forces as they are and not only for the factors that they were found
+/// with.
 fn confirm(set: &WrenchSet<'_>, factor: &Factor, active: &Active, start: &Twist) -> Option<Balance> {
     let mut remainder = *start;
     let mut extremes = [(Extreme::NONE, 0.0); 6];
@@ -184,7 +190,8 @@ pub(crate) fn internal_force(set: &WrenchSet<'_>, balance: &Balance) -> Certific
 
 /// A twist along which no contact pushes as a certificate: backwards no contact resists it.
 ///
-/// Only if the round cones push no more than the edges inside them; else the verdict is one about edges, which proves nothing of the cones.
+/// Only if the round cones push no more than the edges inside them; else the verdict is one about edges,
+/// which proves nothing of the cones.
 pub(crate) fn separating_twist(set: &WrenchSet<'_>, pushed: &Twist) -> Certificate {
     let unit = pushed.scaled(1.0 / pushed.norm());
     let round = |i: &usize| set.edges_of(*i).is_none();

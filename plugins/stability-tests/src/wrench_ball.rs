@@ -56,21 +56,25 @@ impl Default for WrenchBallSettings {
 
 impl Settings for WrenchBallSettings {}
 
-/// Stable where the wrench ball's radius Q1 exceeds a bound: how large a wrench, in any direction, normal forces that add up to 1 N resist.
+/// Stable where the wrench ball's radius Q1 exceeds a bound: how large a wrench, in any direction, normal
+/// forces that add up to 1 N resist.
 ///
-/// Ferrari & Canny, "Planning optimal grasps", ICRA 1992, with the L1 bound: Q1 is the distance of the origin from the boundary of the
-/// convex hull of all contacts' wrenches at unit normal force. A torque counts as a force by division with a length. By default that is the
-/// largest distance of a contact from the contacts' centroid, about which torques are taken: then margins do not depend on frame or
-/// size, but a contact more may lower one (it moves the centroid). Set `length`, and `center` to the centre of mass, to compare grasps of
-/// one object; then the margin only grows with friction and contacts.
+/// Ferrari & Canny, "Planning optimal grasps", ICRA 1992, with the L1 bound: Q1 is the distance of the origin
+/// from the boundary of the convex hull of all contacts' wrenches at unit normal force. A torque counts as a
+/// force by division with a length. By default that is the largest distance of a contact from the contacts'
+/// centroid, about which torques are taken: then margins do not depend on frame or size, but a contact more
+/// may lower one (it moves the centroid). Set `length`, and `center` to the centre of mass, to compare grasps
+/// of one object; then the margin only grows with friction and contacts.
 ///
-/// Round cones enter exactly, by their support function, or with `cone_edges` as Ferrari and Canny's polyhedra inscribed in them;
-/// polyhedral cones enter as they are. Closure is decided first, as in [`ForceClosure`] or `stability-test/linearised`. Where a positive
-/// bound is asked for, the ellipsoid about the analytic centre gives bounds in microseconds; what they leave open is decided by an expanding
-/// polytope in six dimensions with certified bounds on both sides, within milliseconds (only that allocates). Neither proved means
-/// [`Stability::Undecided`].
+/// Round cones enter exactly, by their support function, or with `cone_edges` as Ferrari and Canny's
+/// polyhedra inscribed in them; polyhedral cones enter as they are. Closure is decided first, as in
+/// [`ForceClosure`] or `stability-test/linearised`. Where a positive bound is asked for, the ellipsoid about
+/// the analytic centre gives bounds in microseconds; what they leave open is decided by an expanding polytope
+/// in six dimensions with certified bounds on both sides, within milliseconds (only that allocates). Neither
+/// proved means [`Stability::Undecided`].
 ///
-/// Margins are reported within 0.5 %. A grasp that is closed but not deep enough has lower bound 0 and its true upper bound.
+/// Margins are reported within 0.5 %. A grasp that is closed but not deep enough has lower bound 0 and its
+/// true upper bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrenchBall {
     settings: WrenchBallSettings,
@@ -219,10 +223,12 @@ regrasp_api::inventory::submit! {
     Entry {
         id: ID,
         slots: &[Slot::StabilityTest],
-        summary: "Ferrari and Canny's wrench ball (L1): stable where its radius exceeds a bound; exact or linearised cones.",
+        summary: "Ferrari and Canny's wrench ball (L1): stable where its radius exceeds a bound; exact or \
+            linearised cones.",
         references: &[
             "Ferrari, Canny, Planning optimal grasps, ICRA 1992",
-            "van den Bergen, Proximity queries and penetration depth computation on 3D game objects, GDC 2001",
+            "van den Bergen, Proximity queries and penetration depth computation on 3D game objects, GDC \
+                2001",
             "Barber, Dobkin, Huhdanpaa, The Quickhull algorithm for convex hulls, ACM TOMS 1996",
         ],
         schema: WrenchBallSettings::schema,

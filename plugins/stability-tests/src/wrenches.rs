@@ -1,4 +1,5 @@
-//! The wrenches that a grasp's contacts can transmit at unit normal force: round, with a ring of edges inside, or polyhedral as given.
+//! The wrenches that a grasp's contacts can transmit at unit normal force: round, with a ring of edges
+//! inside, or polyhedral as given.
 
 use crate::contacts::{ScaledContact, ScaledGrasp, Twist};
 use regrasp_api::{Cone, ConeEdge, FingerIndex, Grasp, MAX_FINGERS, Vec3, tangents};
@@ -6,13 +7,15 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The most edges of a linearised cone, as the schemas of the settings have it.
 const MAX_EDGES: usize = 64;
-/// Latitudes at which a soft finger's edges lie, for the most edges: both poles and sixteen steps to each from the equator.
+/// Latitudes at which a soft finger's edges lie, for the most edges: both poles and sixteen steps to each
+/// from the equator.
 const MAX_LATITUDES: usize = MAX_EDGES / 2 + 1;
 
-/// Where the edges of linearised cones lie: on the circle |f_t| = μ f_n or, for soft fingers, on the ellipsoid |f_t|²/μ² + m²/γ² = f_n².
+/// Where the edges of linearised cones lie: on the circle |f_t| = μ f_n or, for soft fingers, on the
+/// ellipsoid |f_t|²/μ² + m²/γ² = f_n².
 ///
-/// m longitudes in equal steps; on the ellipsoid also latitudes in steps of about the same angle, both poles included. All edges lie on the
-/// cone's surface, so that the linearised cone is inside the round one.
+/// m longitudes in equal steps; on the ellipsoid also latitudes in steps of about the same angle, both poles
+/// included. All edges lie on the cone's surface, so that the linearised cone is inside the round one.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ring {
     count: usize,

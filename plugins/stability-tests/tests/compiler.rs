@@ -1,11 +1,13 @@
 //! A guard against a compiler that gets plain floating-point code wrong.
 //!
-//! LLVM 22 (rustc 1.95) was seen to vectorise the loop below wrongly for CPUs with AVX2 (`target-cpu` x86-64-v3 or native), with a wrong
-//! boolean as result. The project sets no `target-cpu`; whoever does learns here that stability verdicts cannot be trusted.
+//! LLVM 22 (rustc 1.95) was seen to vectorise the loop below wrongly for CPUs with AVX2 (`target-cpu`
+//! x86-64-v3 or native), with a wrong boolean as result. The project sets no `target-cpu`; whoever does
+//! learns here that stability verdicts cannot be trusted.
 
 use std::hint::black_box;
 
-/// Whether every plane through two of the vectors (and the origin) has others on both sides: they span space positively.
+/// Whether every plane through two of the vectors (and the origin) has others on both sides: they span space
+/// positively.
 #[inline(never)]
 fn spans_positively(vectors: &[[f64; 3]; 6]) -> bool {
     let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -62,7 +64,8 @@ fn plain_loops_over_floating_point_numbers_are_compiled_rightly() {
     let scaled = SEEN.map(|vector| vector.map(|x| x as f64 * 1e-10));
     assert!(
         spans_positively(black_box(&scaled)),
-        "this build miscompiles floating-point loops: build without a target-cpu, or with `-C no-vectorize-slp`"
+        "this build miscompiles floating-point loops: build without a target-cpu, or with `-C \
+            no-vectorize-slp`"
     );
 }
 

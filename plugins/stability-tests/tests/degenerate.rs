@@ -1,4 +1,5 @@
-//! Grasps whose verdict is known by hand: degenerate ones that must never count as closed, and classical closed ones.
+//! Grasps whose verdict is known by hand: degenerate ones that must never count as closed, and classical
+//! closed ones.
 
 mod support;
 
@@ -11,7 +12,8 @@ use support::{
     Touch, assess, check_certificate, force_closure, grasp_of, moved, socp, touch, verdict, with_context,
 };
 
-/// Not closed, in every position of the object and with friction from small to large, with a proof where there is a verdict.
+/// Not closed, in every position of the object and with friction from small to large, with a proof where
+/// there is a verdict.
 fn never_closed(name: &str, at: impl Fn(f64) -> Vec<Touch>) {
     let mut random = Random::from_key(11, 0, 0, 0);
     for mu in [0.0, 0.01, 0.3, 0.8, 1.0, 1.5, 4.0] {
@@ -44,7 +46,8 @@ fn four_contacts_on_one_face_are_never_closed() {
 
 #[test]
 fn an_antipodal_pair_with_a_third_that_does_not_straddle_is_never_closed() {
-    // The third pushes along +y beside the pair's line; its cone reaches both sides of the line only for mu ≥ 4 here.
+    // The third pushes along +y beside the pair's line; its cone reaches both sides of the line only for mu ≥
+    // 4 here.
     let grasp = |mu: f64| {
         vec![
             touch([1.0, 0.0, 0.0], [1.0, 0.0, 0.0], mu),
@@ -121,8 +124,9 @@ fn a_regular_tetrahedron_of_contacts_closes_with_any_friction() {
 
 #[test]
 fn the_margin_of_two_antipodal_soft_fingers_is_that_of_theory() {
-    // Contacts at ±x. A turn u about x is felt by γ u at both. A motion s across x and s about the axis across both leaves one contact at
-    // rest and moves the other by 2s; with δ along x the two feel δ and 2μs - δ, the least at δ = μs: μ / sqrt(2 + μ²).
+    // Contacts at ±x. A turn u about x is felt by γ u at both. A motion s across x and s about the axis
+    // across both leaves one contact at rest and moves the other by 2s; with δ along x the two feel δ and 2μs
+    // - δ, the least at δ = μs: μ / sqrt(2 + μ²).
     for (mu, gamma) in [(0.5, 0.2), (0.5, 0.7), (0.3, 0.1)] {
         let one = Touch { gamma, ..touch([1.0, 0.0, 0.0], [1.0, 0.0, 0.0], mu) };
         let other = Touch { gamma, ..touch([-1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], mu) };

@@ -58,7 +58,8 @@ fn fingers_around_a_ball_carry_what_friction_allows() {
 
 #[test]
 fn the_bound_of_the_force_is_kept_by_every_finger_alone() {
-    // Two pairs at unlike heights above the centre of mass: the same count, but the weight hangs beside two of the fingers.
+    // Two pairs at unlike heights above the centre of mass: the same count, but the weight hangs beside two
+    // of the fingers.
     let shifted = Vec3::new(0.02, 0.0, 0.0);
     let touches = equator(4, 0.8);
     let most = |p_OCm: Vec3| {
@@ -118,7 +119,8 @@ fn without_gravity_every_stable_grasp_is_force_closure() {
     assert!(yes > closed / 2 && yes > 300, "{yes} of {closed}");
 }
 
-/// How far inside some forces that balance `wanted` (force, torque about O's origin) can be, as a part of the largest: by Clarabel.
+/// How far inside some forces that balance `wanted` (force, torque about O's origin) can be, as a part of the
+/// largest: by Clarabel.
 fn reference(touches: &[Touch], wanted: &Vector6<f64>, most: f64, length: f64) -> Option<f64> {
     let columns = 4 * touches.len() + 1;
     // Rows: balance; f_n + t ≤ 1; (f_n - t, u) in the cone.
@@ -163,7 +165,8 @@ fn compressed(dense: &DMatrix<f64>) -> CscMatrix<f64> {
     CscMatrix::from(&rows)
 }
 
-/// The wrenches that the contacts must give: against the weight alone, and with each vertex of the disturbances.
+/// The wrenches that the contacts must give: against the weight alone, and with each vertex of the
+/// disturbances.
 fn loads(settings: &EquilibriumSettings, mass: f64, p_OCm: Vec3, g_O: Vec3) -> Vec<Vector6<f64>> {
     let wrench = |f: Vec3, m: Vec3| {
         let m = p_OCm.cross(&f) + m;

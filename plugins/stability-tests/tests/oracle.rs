@@ -38,7 +38,8 @@ impl Count {
         match (ours, reference) {
             (_, Stability::Undecided) => self.reference_undecided += 1,
             (Stability::Undecided, _) => {
-                // Undecided counts as not closed: allowed a hair inside the boundary only. Q1 is at least 0.41 t σ.
+                // Undecided counts as not closed: allowed a hair inside the boundary only. Q1 is at least
+                // 0.41 t σ.
                 let t = assess(&socp(), touches).margin_lower;
                 let sigma = smallest_singular_value(touches);
                 assert!(0.41 * t * sigma < 3e-6, "undecided at t = {t}, sigma = {sigma}: {touches:?}");
@@ -68,7 +69,8 @@ fn compare_random(count: usize, seed: u64) -> Count {
     seen
 }
 
-/// Friction scaled to the critical value, found by bisection with the test itself, and then off it by 1e-2 to 1e-9.
+/// Friction scaled to the critical value, found by bisection with the test itself, and then off it by 1e-2 to
+/// 1e-9.
 fn compare_near_boundary(count: usize, seed: u64) -> Count {
     let mut random = Random::from_key(seed, 2, 0, 0);
     let mut seen = Count::default();

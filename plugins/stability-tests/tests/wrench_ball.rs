@@ -71,14 +71,16 @@ fn margins_are_within_a_percent_of_a_dense_reference() {
         let dense = dense(&touches, &mut random);
         assert!(found.margin_lower <= dense * (1.0 + 1e-9), "{found:?} {dense}");
         assert!(found.margin_upper - found.margin_lower <= 0.0051 * found.margin_upper, "{found:?}");
-        // The dense search stalls where supports meet: it may end above the direction that counts, never undercut it.
+        // The dense search stalls where supports meet: it may end above the direction that counts, never
+        // undercut it.
         assert!(found.margin_upper <= dense * 1.006, "{found:?} {dense}");
         close += usize::from(dense <= found.margin_upper * 1.01);
     }
     assert!(close >= 12, "the dense search comes within a percent in {close} of 30");
 }
 
-/// The smallest distance of a hyperplane through six of the points that has all others on one side: Q1 by enumeration.
+/// The smallest distance of a hyperplane through six of the points that has all others on one side: Q1 by
+/// enumeration.
 fn enumerated(points: &[nalgebra::Vector6<f64>]) -> f64 {
     let (mut depth, mut chosen) = (f64::INFINITY, [0, 1, 2, 3, 4, 5]);
     loop {

@@ -1,4 +1,5 @@
-//! Time of geodesics, of the paths of `surface/steiner`, projections and edge distances; each figure is the mean over 256 fixed inputs.
+//! Time of geodesics, of the paths of `surface/steiner`, projections and edge distances; each figure is the
+//! mean over 256 fixed inputs.
 
 #[path = "../tests/common/mod.rs"]
 #[allow(unused)]

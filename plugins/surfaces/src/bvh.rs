@@ -7,7 +7,8 @@ use regrasp_api::{Vec3, any_orthogonal};
 /// Deep enough for 2^31 things: sixteen levels, each of which leaves three children waiting.
 const DEPTH: usize = 64;
 
-/// A flat or straight thing: the hull of three points (m), and the direction in which it is thin (zero if none).
+/// A flat or straight thing: the hull of three points (m), and the direction in which it is thin (zero if
+/// none).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Thing {
     pub corners: [Vec3; 3],
@@ -16,8 +17,8 @@ pub(crate) struct Thing {
 
 /// A box about some things, turned so that its third axis is their mean thin direction.
 ///
-/// Facets of a curved surface fill a turned box far better than one along the axes: a fingertip that touches the surface
-/// comes within its radius of few boxes besides the one that it touches.
+/// Facets of a curved surface fill a turned box far better than one along the axes: a fingertip that touches
+/// the surface comes within its radius of few boxes besides the one that it touches.
 #[derive(Clone, Copy, Debug)]
 struct Turned {
     axes: [Vec3; 3],
@@ -65,8 +66,8 @@ const THING: u32 = 1 << 31;
 
 /// The turned boxes of four children, in single precision, side by side.
 ///
-/// Distances from them are rounded down by more than single precision may be wrong: nothing is missed, and the exact distances are
-/// the things' own.
+/// Distances from them are rounded down by more than single precision may be wrong: nothing is missed, and
+/// the exact distances are the things' own.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     /// For each axis its three coordinates.
@@ -96,8 +97,9 @@ impl Node {
         }
     }
 
-    /// Squared distances (m²) of a point from the boxes, rounded down so far that what is as close as a bound in single precision
-    /// lies below it; infinite where there is no child. `slack` (m) bounds what rounding may do to one coordinate.
+    /// Squared distances (m²) of a point from the boxes, rounded down so far that what is as close as a bound
+    /// in single precision lies below it; infinite where there is no child. `slack` (m) bounds what rounding
+    /// may do to one coordinate.
     #[inline]
     fn squared_distances(&self, [x, y, z]: [f32; 3], slack: f32) -> Lanes {
         let mut sum = [0.0_f32; WIDE];
@@ -202,7 +204,8 @@ impl Hierarchy {
 
     /// Visits every thing whose box may come as close to `p` as the bound, near ones first.
     ///
-    /// `visit` is handed a thing and the bound on the squared distance (m²), and lowers the bound where the thing is closer.
+    /// `visit` is handed a thing and the bound on the squared distance (m²), and lowers the bound where the
+    /// thing is closer.
     pub fn closest(&self, p: &Vec3, bound: &mut f64, mut visit: impl FnMut(u32, &mut f64)) {
         let Probe { at, slack } = self.probe(p);
         let mut stack = [(0.0_f32, 0_u32); DEPTH];
@@ -235,7 +238,8 @@ impl Hierarchy {
     }
 }
 
-/// The things with the smaller and with the larger middles along the longest side of their box; one thing stays alone.
+/// The things with the smaller and with the larger middles along the longest side of their box; one thing
+/// stays alone.
 fn halves<'a>(things: &[Thing], members: &'a mut [u32]) -> (&'a mut [u32], &'a mut [u32]) {
     if members.len() < 2 {
         return members.split_at_mut(members.len());

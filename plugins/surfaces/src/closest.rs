@@ -28,7 +28,8 @@ struct Nearest {
 }
 
 impl Nearest {
-    /// The order that settles ties: smaller distance, then smaller facet. It makes the answer independent of the search.
+    /// The order that settles ties: smaller distance, then smaller facet. It makes the answer independent of
+    /// the search.
     fn is_before(&self, other: &Self) -> bool {
         self.squared < other.squared || (self.squared == other.squared && self.facet < other.facet)
     }
@@ -74,7 +75,8 @@ impl ClosestPoints {
         !self.facets.any_closer(p_OF, squared, |facet| on_facet(polyhedron, p_OF, facet).squared < squared)
     }
 
-    /// Whether `is_it` holds for a facet whose box comes as close as `distance` (m); it is asked about others too.
+    /// Whether `is_it` holds for a facet whose box comes as close as `distance` (m); it is asked about others
+    /// too.
     pub fn any_box(&self, p_OF: &Vec3, distance: f64, is_it: impl FnMut(u32) -> bool) -> bool {
         self.facets.any_closer(p_OF, distance.max(0.0).powi(2), is_it)
     }
@@ -93,10 +95,11 @@ impl ClosestPoints {
         best
     }
 
-    /// The contact and the signed distance; inside the solid the distance is negative, the normal still outward.
+    /// The contact and the signed distance; inside the solid the distance is negative, the normal still
+    /// outward.
     ///
-    /// On edges and at vertices the side is that of the angle-weighted normal (Bærentzen & Aanæs, "Signed distance
-    /// computation using the angle weighted pseudonormal", IEEE TVCG 2005).
+    /// On edges and at vertices the side is that of the angle-weighted normal (Bærentzen & Aanæs, "Signed
+    /// distance computation using the angle weighted pseudonormal", IEEE TVCG 2005).
     fn signed(&self, polyhedron: &Polyhedron, p_OF: &Vec3, nearest: &Nearest) -> Projection {
         let (facet, p_OC) = (nearest.facet, nearest.p_OC);
         let normal = polyhedron.mesh.normal(facet);
@@ -136,8 +139,8 @@ fn walk(polyhedron: &Polyhedron, p_OF: &Vec3, facet: u32) -> (Nearest, bool) {
 
 /// Whether a local minimum is certainly the closest point: outside of a convex solid.
 ///
-/// A convex solid lies in the half-space that the outward direction at the minimum bounds. The direction at a minimum
-/// inside a facet may be inward (the far side of a flat object): then the global search decides.
+/// A convex solid lies in the half-space that the outward direction at the minimum bounds. The direction at a
+/// minimum inside a facet may be inward (the far side of a flat object): then the global search decides.
 fn is_certain(polyhedron: &Polyhedron, p_OF: &Vec3, nearest: &Nearest) -> bool {
     polyhedron.convex && (p_OF - nearest.p_OC).dot(&polyhedron.mesh.normal(nearest.facet)) > 0.0
 }

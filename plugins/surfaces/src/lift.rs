@@ -18,8 +18,8 @@ pub(crate) fn angle(a: &Vec3, b: &Vec3) -> f64 {
     a.cross(b).norm().atan2(a.dot(b))
 }
 
-/// Rolls a ball of the given radius (m) over the facets of `legs`: straight over a facet, turning about its contact at a
-/// convex edge. Exact on a convex solid.
+/// Rolls a ball of the given radius (m) over the facets of `legs`: straight over a facet, turning about its
+/// contact at a convex edge. Exact on a convex solid.
 pub(crate) fn lift(
     polyhedron: &Polyhedron,
     radius: f64,
@@ -51,7 +51,8 @@ pub(crate) fn lift(
     }
 }
 
-/// Whether both contacts lie on one edge or at one vertex: the ball slides along it while it turns between its facets.
+/// Whether both contacts lie on one edge or at one vertex: the ball slides along it while it turns between
+/// its facets.
 fn stays_on_edge(polyhedron: &Polyhedron, start: Place, end: Place) -> bool {
     match (start, end) {
         (Place::Vertex(a), Place::Vertex(b)) => a == b,

@@ -39,7 +39,8 @@ impl HalfEdge {
         self.p_OE + self.along_O * x
     }
 
-    /// Position along the edge and distance from its line (m) of a point, as if turned into the facet's half-plane.
+    /// Position along the edge and distance from its line (m) of a point, as if turned into the facet's
+    /// half-plane.
     pub fn unfold(&self, p_OP: &Vec3) -> Planar {
         let from = p_OP - self.p_OE;
         let x = from.dot(&self.along_O);
@@ -132,7 +133,8 @@ impl Polyhedron {
         }
     }
 
-    /// A locally convex closed surface that is connected and winds once (total curvature 4π) bounds a convex solid.
+    /// A locally convex closed surface that is connected and winds once (total curvature 4π) bounds a convex
+    /// solid.
     fn is_convex(&self) -> bool {
         let curvature: f64 = self.total_angle.iter().map(|angle| TAU - angle).sum();
         self.mesh.is_locally_convex()
@@ -145,7 +147,8 @@ impl Polyhedron {
         self.half_edges[previous(half_edge) as usize].twin
     }
 
-    /// The half-edges that begin at a vertex, counter-clockwise from direction 0; each stands for the facet to its left.
+    /// The half-edges that begin at a vertex, counter-clockwise from direction 0; each stands for the facet
+    /// to its left.
     pub fn star(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
         let first = self.outgoing[vertex as usize];
         let step = move |&at: &u32| Some(self.counter_clockwise(at)).filter(|&after| after != first);

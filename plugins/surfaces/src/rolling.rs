@@ -28,15 +28,16 @@ pub(crate) struct Rolling {
     above: Above,
     /// The fingertip's radius (m).
     radius: f64,
-    /// Largest distance (m) between two places of the fingertip that are looked at on solids that are not convex.
+    /// Largest distance (m) between two places of the fingertip that are looked at on solids that are not
+    /// convex.
     step: f64,
     /// Sum of the facets' areas up to and with each facet (m²).
     areas: Vec<f64>,
 }
 
 impl Rolling {
-    /// Prepares `mesh` for fingertips of the given radius (m). Edges are sharp beyond `sharp_angle_deg`; `step` (m) is at
-    /// most a fifth of the radius.
+    /// Prepares `mesh` for fingertips of the given radius (m). Edges are sharp beyond `sharp_angle_deg`;
+    /// `step` (m) is at most a fifth of the radius.
     pub fn new(mesh: &Mesh, radius: f64, sharp_angle_deg: f64, step: f64) -> Self {
         let polyhedron = Polyhedron::new(mesh);
         let mut sum = 0.0;
@@ -66,7 +67,8 @@ impl Rolling {
         Spot { contact: *contact, place: self.polyhedron.place(facet, &contact.p_OC) }
     }
 
-    /// Fills `path` with the fingertip's way over `legs`, the last of which leads to the end; `false` where it cannot go.
+    /// Fills `path` with the fingertip's way over `legs`, the last of which leads to the end; `false` where
+    /// it cannot go.
     pub fn roll(
         &self,
         (start, end): (&Spot, &Spot),
@@ -96,7 +98,8 @@ impl Rolling {
         self.closest.project(&self.polyhedron, p_OF, hint)
     }
 
-    /// The contact a `distance` (m) straight ahead; where the fingertip would sink in there, pushed out to where it touches.
+    /// The contact a `distance` (m) straight ahead; where the fingertip would sink in there, pushed out to
+    /// where it touches.
     pub fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
         self.settled(walk(&self.polyhedron, from, self.spot(from).place, direction_O, distance))
     }
@@ -116,7 +119,8 @@ impl Rolling {
         Follower { polyhedron, closest, above, radius: *radius, step: *step }
     }
 
-    /// The vertex farthest along a direction, with that direction as its normal: a contact that every fingertip reaches.
+    /// The vertex farthest along a direction, with that direction as its normal: a contact that every
+    /// fingertip reaches.
     fn outermost(&self, n_O: &Vec3) -> Contact {
         let vertices = self.polyhedron.mesh.vertices();
         let along = |&vertex: &u32| vertices[vertex as usize].dot(n_O);

@@ -1,11 +1,11 @@
 //! Straightening: the shortest path through a strip of facets, and through the strips around its bends.
 //!
-//! A strip is unfolded into the plane, where the funnel algorithm (Lee & Preparata, "Euclidean shortest paths in the
-//! presence of rectilinear barriers", Networks 14, 1984) finds its shortest path. That path bends at vertices only. Where
-//! the facets on the other side of such a vertex leave less than a straight angle, the strip is led around that side, which
-//! is shorter, until no bend is left that can be improved (Xin & Wang, "Efficiently determining a locally exact shortest
-//! path on polyhedral surfaces", Computer-Aided Design 39, 2007). The result is locally shortest and never longer than the
-//! path that the strip came from.
+//! A strip is unfolded into the plane, where the funnel algorithm (Lee & Preparata, "Euclidean shortest paths
+//! in the presence of rectilinear barriers", Networks 14, 1984) finds its shortest path. That path bends at
+//! vertices only. Where the facets on the other side of such a vertex leave less than a straight angle, the
+//! strip is led around that side, which is shorter, until no bend is left that can be improved (Xin & Wang,
+//! "Efficiently determining a locally exact shortest path on polyhedral surfaces", Computer-Aided Design 39,
+//! 2007). The result is locally shortest and never longer than the path that the strip came from.
 
 use crate::lift::Leg;
 use crate::polyhedron::{Planar, Polyhedron, next, previous};
@@ -26,7 +26,8 @@ struct Bend {
     at: Planar,
 }
 
-/// The crossed edges of a path over facets, each as the half-edge of the facet that is entered, and memory to straighten it.
+/// The crossed edges of a path over facets, each as the half-edge of the facet that is entered, and memory to
+/// straighten it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Strip {
     pub crossings: Vec<u32>,
@@ -118,8 +119,8 @@ impl Strip {
         self.portals.push([target, target]);
     }
 
-    /// Finds the bends of the shortest path through the portals: each side of the funnel moves inwards until it crosses the
-    /// other, whose end then is a bend and the funnel's new apex.
+    /// Finds the bends of the shortest path through the portals: each side of the funnel moves inwards until
+    /// it crosses the other, whose end then is a bend and the funnel's new apex.
     fn pull(&mut self) {
         self.bends.clear();
         let mut apex = self.start;
@@ -176,7 +177,8 @@ impl Strip {
         let mut ahead = (target, usize::MAX);
         let bends = std::mem::take(&mut self.bends);
         for (index, bend) in bends.iter().enumerate().rev() {
-            // What was led around a bend ahead has no crossings of this one any more: its turn comes in the next round.
+            // What was led around a bend ahead has no crossings of this one any more: its turn comes in the
+            // next round.
             if bend.crossing >= ahead.1 {
                 ahead.0 = bend.at;
                 continue;
@@ -235,8 +237,8 @@ impl Strip {
         around
     }
 
-    /// The vertices beside the strip whose facets' angles differ from a full turn by more than `least` (rad): a crossed edge that ends at
-    /// each, and whether on its left.
+    /// The vertices beside the strip whose facets' angles differ from a full turn by more than `least` (rad):
+    /// a crossed edge that ends at each, and whether on its left.
     ///
     /// Paths on both sides of such a vertex can be locally shortest.
     pub fn corners(&self, polyhedron: &Polyhedron, least: f64) -> Vec<(usize, bool)> {

@@ -4,7 +4,8 @@ use crate::polyhedron::{Place, Polyhedron, next, previous};
 use regrasp_api::{Contact, Vec3};
 use std::f64::consts::TAU;
 
-/// Facets crossed before a walk ends where it is: a bound against rounding, far above what any distance on the object needs.
+/// Facets crossed before a walk ends where it is: a bound against rounding, far above what any distance on
+/// the object needs.
 const MOST_FACETS: usize = 100_000;
 
 /// A point on its way across a facet.
@@ -16,8 +17,9 @@ struct Heading {
     along_O: Vec3,
 }
 
-/// The contact reached by a straightest geodesic: straight in every facet, unfolded across edges; at a vertex with equal
-/// angles on both sides (Polthier & Schmies, "Straightest geodesics on polyhedral surfaces", 1998).
+/// The contact reached by a straightest geodesic: straight in every facet, unfolded across edges; at a vertex
+/// with equal angles on both sides (Polthier & Schmies, "Straightest geodesics on polyhedral surfaces",
+/// 1998).
 pub(crate) fn walk(
     polyhedron: &Polyhedron,
     from: &Contact,

@@ -65,7 +65,8 @@ fn over_a_box_all_unfoldings_are_tried() {
     }
 }
 
-/// The least value over all pairs of angles, by grids that close in on the best places; knows nothing of derivatives.
+/// The least value over all pairs of angles, by grids that close in on the best places; knows nothing of
+/// derivatives.
 fn least_of_pairs(f: impl Fn(f64, f64) -> f64) -> f64 {
     const GRID: usize = 120;
     let mut tried = Vec::new();
@@ -89,7 +90,8 @@ fn least_of_pairs(f: impl Fn(f64, f64) -> f64) -> f64 {
     tried.iter().take(40).map(close_in).fold(f64::INFINITY, f64::min)
 }
 
-/// A random point of a tube's side or of one of its caps, now and then on a rim, and its cap's sign (0 on the side).
+/// A random point of a tube's side or of one of its caps, now and then on a rim, and its cap's sign (0 on the
+/// side).
 fn on_tube(radius: f64, half_height: f64, round: bool, random: &mut Random) -> (Vec3, f64) {
     let angle = random.range(-PI, PI);
     let out = |rho: f64, z: f64| Vec3::new(rho * angle.cos(), rho * angle.sin(), z);
@@ -171,8 +173,9 @@ fn integral(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     (0..=count).map(|i| weight(i) * f(from + h * f64::from(i))).sum::<f64>() * h / 3.0
 }
 
-/// A geodesic of a spheroid from its equator by quadrature (Karney, "Algorithms for geodesics", J. Geodesy 87, 2013, equations 7 and 8):
-/// the place after the arc σ on the auxiliary sphere, the length, and the longitude (rad).
+/// A geodesic of a spheroid from its equator by quadrature (Karney, "Algorithms for geodesics", J. Geodesy
+/// 87, 2013, equations 7 and 8): the place after the arc σ on the auxiliary sphere, the length, and the
+/// longitude (rad).
 fn on_spheroid(a: f64, c: f64, azimuth: f64, sigma: f64) -> (Vec3, f64, f64) {
     let (sin, cos) = azimuth.sin_cos();
     let f = (a - c) / a;

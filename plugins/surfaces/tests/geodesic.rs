@@ -88,8 +88,8 @@ fn tori_of_any_size_have_paths_between_all_points() {
 
 /// Against a graph with 12 points on every edge, which is never too short.
 ///
-/// Our paths are real paths of the surface (tested below), so they are never too short either: being shorter than the
-/// graph's they are nearer to the truth than the graph.
+/// Our paths are real paths of the surface (tested below), so they are never too short either: being shorter
+/// than the graph's they are nearer to the truth than the graph.
 #[test]
 fn fine_meshes_agree_with_dense_graphs() {
     for mesh in [
@@ -149,7 +149,8 @@ fn flat_faces_balls_and_cylinders_have_their_closed_forms() {
         let ours = length(&surface_of_box, &on_top(a.0, a.1), &on_top(b.0, b.1));
         assert!((ours - straight).abs() < 1e-9, "{ours} {straight}");
     }
-    // A ball of 1,280 facets lies up to 0.4 % below its circumscribed sphere; great circles shrink by as much at most.
+    // A ball of 1,280 facets lies up to 0.4 % below its circumscribed sphere; great circles shrink by as much
+    // at most.
     let mesh = meshes::sphere(0.03, 3);
     let surface_of_ball = surface(&mesh);
     let mut random = Random::from_key(8, 0, 0, 0);

@@ -127,7 +127,8 @@ fn hollows_are_followed_without_penetration() {
 
 /// Planning sets fingers down at places of a path: what the path says of the contact there must be true.
 ///
-/// Places where the ball touches two facets at once, as it does all along an inner edge, have two true answers.
+/// Places where the ball touches two facets at once, as it does all along an inner edge, have two true
+/// answers.
 #[test]
 fn a_place_of_a_path_names_the_point_that_the_fingertip_touches() {
     for mesh in [

@@ -149,7 +149,8 @@ fn a_walk_is_as_long_as_the_geodesic_to_its_end() {
             let to = surface.walk(&from, &random.direction(), distance);
             assert!(reference::facets_with(&mesh, &to.p_OC).contains(&to.facet));
             assert!((surface.project(&to.p_OC, None).distance).abs() < 1e-12);
-            // Straight lines are not always shortest, but never shorter, and over small distances mostly shortest.
+            // Straight lines are not always shortest, but never shorter, and over small distances mostly
+            // shortest.
             let shortest = length(&surface, &from, &to);
             assert!(shortest <= distance * (1.0 + 3e-4) + 1e-9, "{shortest} > {distance}");
             straight += usize::from((shortest - distance).abs() < 3e-4 * distance + 1e-9);

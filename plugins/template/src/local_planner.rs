@@ -1,4 +1,5 @@
-//! A local planner for the slot `local-planner.regrasp`: lift the finger, slide it above the surface, touch down.
+//! A local planner for the slot `local-planner.regrasp`: lift the finger, slide it above the surface, touch
+//! down.
 
 use regrasp_api::{
     Build, CallError, Configuration, Contact, Context, Entry, FingerIndex, FingerJoints, FingerSet, Hint,
@@ -24,7 +25,8 @@ impl Default for UpOverDownSettings {
 
 impl Settings for UpOverDownSettings {}
 
-/// Moves one finger: up along the normal, along the shortest path on the surface, down along the new normal; all or nothing.
+/// Moves one finger: up along the normal, along the shortest path on the surface, down along the new normal;
+/// all or nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct UpOverDown {
     settings: UpOverDownSettings,
@@ -99,7 +101,8 @@ impl Flight<'_> {
 
     /// Above the path on the surface, from a lifted posture to a lifted posture.
     fn slide(&self, path: &SurfacePath, from: &FingerJoints, to: &FingerJoints) -> Way {
-        // The fingertip's way is longer at a height than on the surface; twice is enough for objects larger than the fingertip.
+        // The fingertip's way is longer at a height than on the surface; twice is enough for objects larger
+        // than the fingertip.
         let count = self.steps(2.0 * path.lift_length());
         let lift = 1.01 * self.task.resolution.lift;
         let mut near = *from;

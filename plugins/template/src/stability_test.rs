@@ -1,8 +1,10 @@
-//! A stability test: two contacts that press towards each other, and a third that stops the turn about their line.
+//! A stability test: two contacts that press towards each other, and a third that stops the turn about their
+//! line.
 //!
-//! Two point contacts with friction whose joining line lies strictly inside both friction cones balance every wrench but a torque about that
-//! line (Nguyen, "Constructing force-closure grasps", IJRR 1988). If the cones of the other contacts give torques of both signs
-//! about the line, the grasp is force closure. The condition is sufficient, not necessary: where it fails the verdict is "undecided".
+//! Two point contacts with friction whose joining line lies strictly inside both friction cones balance every
+//! wrench but a torque about that line (Nguyen, "Constructing force-closure grasps", IJRR 1988). If the cones
+//! of the other contacts give torques of both signs about the line, the grasp is force closure. The condition
+//! is sufficient, not necessary: where it fails the verdict is "undecided".
 
 use regrasp_api::{
     Assessment, Build, CallError, Certificate, Cone, Context, Entry, Grasp, GraspContact, Hint, Settings,
@@ -27,7 +29,8 @@ impl Default for PressedPairSettings {
 
 impl Settings for PressedPairSettings {}
 
-/// A grasp is stable if two of its contacts press towards each other and the others stop the turn about their line.
+/// A grasp is stable if two of its contacts press towards each other and the others stop the turn about their
+/// line.
 #[derive(Clone, Copy, Debug)]
 pub struct PressedPair {
     settings: PressedPairSettings,
@@ -47,7 +50,8 @@ impl PressedPair {
         Ok(Self { settings })
     }
 
-    /// The best margin over all pairs: how far (no unit) friction cones and torques are from failing; not positive where every pair fails.
+    /// The best margin over all pairs: how far (no unit) friction cones and torques are from failing; not
+    /// positive where every pair fails.
     fn margin(&self, grasp: &Grasp<'_>) -> Result<f64, CallError> {
         let contacts = grasp.contacts();
         for contact in contacts {
@@ -69,7 +73,8 @@ impl PressedPair {
     }
 }
 
-/// The slope of a contact's friction cone. A torque about the normal, where the cone has one, only helps and is left out.
+/// The slope of a contact's friction cone. A torque about the normal, where the cone has one, only helps and
+/// is left out.
 fn slope(contact: &GraspContact<'_>) -> Result<f64, CallError> {
     match &contact.cone {
         Cone::Elliptic { mu, .. } => Ok(*mu),
@@ -81,7 +86,8 @@ fn slope(contact: &GraspContact<'_>) -> Result<f64, CallError> {
     }
 }
 
-/// The smallest of the pair's slacks in its two cones and of the torques that the others give about its line, either way.
+/// The smallest of the pair's slacks in its two cones and of the torques that the others give about its line,
+/// either way.
 fn pair_margin<'a>(a: Point<'a>, b: Point<'a>, others: impl Iterator<Item = Point<'a>>) -> f64 {
     let line = b.contact.p_OC - a.contact.p_OC;
     let length = line.norm();

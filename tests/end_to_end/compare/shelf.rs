@@ -11,7 +11,8 @@ pub fn runs(folder: &Path) -> Vec<Value> {
     text.lines().map(|line| serde_json::from_str(line).expect("a line of the journal is JSON")).collect()
 }
 
-/// Everything of a study that does not depend on the clock: the runs, the table of them, what the study is, the plans, the names of all files.
+/// Everything of a study that does not depend on the clock: the runs, the table of them, what the study is,
+/// the plans, the names of all files.
 pub fn timeless(folder: &Path) -> BTreeMap<String, Value> {
     let mut all = BTreeMap::from([("runs.jsonl".to_owned(), Value::Array(runs(folder)))]);
     all.insert("runs.csv".into(), Value::Array(table(folder).into_iter().map(Value::from).collect()));

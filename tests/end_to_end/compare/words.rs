@@ -80,7 +80,8 @@ fn study_files_hold_what_a_command_line_cannot() {
     let desk = Desk::new();
     desk.write("mine.toml", desk.run("scenarios sphere").out.replace("name = \"sphere\"", "name = \"mine\""));
     let head = "scenarios = [\"mine.toml\", \"sphere-tilt\"]\nseeds = 1\n";
-    let levels = "[[vary]]\nslot = \"graph-strategy\"\nlevels = [{ use = \"interleaved\", start = 0.2, end = 0.4 }, { use = \"lazy\" }]\n";
+    let levels = "[[vary]]\nslot = \"graph-strategy\"\nlevels = [{ use = \"interleaved\", start = 0.2, end \
+        = 0.4 }, { use = \"lazy\" }]\n";
     desk.write("vary.toml", format!("{head}{levels}[plugins.sampler]\nuse = \"projection\"\n"));
     let said = desk.run("compare --study vary.toml -o vary --json");
     assert_eq!(said.code, 0, "{}", said.err);
@@ -92,7 +93,8 @@ fn study_files_hold_what_a_command_line_cannot() {
     assert!(names.contains("\"mine\" \"interleaved end=0.4 start=0.2\""), "{names:?}");
     assert!(desk.read("vary/runs.csv").contains("sampler/projection"));
 
-    let variants = "[[variant]]\nname = \"paper\"\n[[variant]]\nname = \"calm\"\nplugins.graph-strategy = { end = 0.2 }\n";
+    let variants = "[[variant]]\nname = \"paper\"\n[[variant]]\nname = \"calm\"\nplugins.graph-strategy = { \
+        end = 0.2 }\n";
     desk.write("list.toml", format!("{head}{variants}"));
     let rows = desk.run("compare --study list.toml --seeds 2 -o list --json").json();
     assert_eq!((&rows["runs"], &rows["rows"][1]["variant"]), (&8.into(), &"calm".into()));

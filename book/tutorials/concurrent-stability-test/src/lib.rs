@@ -45,7 +45,8 @@ impl Concurrent {
 // ANCHOR_END: settings
 
 // ANCHOR: part
-/// Some contacts of a grasp, and the point that they push towards: their middle, one of them counting more or less than the others.
+/// Some contacts of a grasp, and the point that they push towards: their middle, one of them counting more or
+/// less than the others.
 #[derive(Clone, Copy)]
 struct Part<'a> {
     contacts: &'a [GraspContact<'a>],
@@ -113,7 +114,8 @@ fn room(contact: &GraspContact<'_>, force: &Vec3) -> f64 {
 // ANCHOR_END: margin
 
 // ANCHOR: cones
-/// The slope of a contact's friction cone. A torque about the normal, where the cone has one, only helps and is left out.
+/// The slope of a contact's friction cone. A torque about the normal, where the cone has one, only helps and
+/// is left out.
 fn slope(contact: &GraspContact<'_>) -> Result<f64, CallError> {
     match &contact.cone {
         Cone::Elliptic { mu, .. } => Ok(*mu),
@@ -176,7 +178,8 @@ impl StabilityTest for Concurrent {
     }
 }
 
-/// The proof, where all contacts push: anybody can add these forces up and look whether they lie in their cones.
+/// The proof, where all contacts push: anybody can add these forces up and look whether they lie in their
+/// cones.
 fn forces(whole: Part<'_>) -> Certificate {
     let (point, size) = whole.point();
     let force = |(contact, weight): (&GraspContact<'_>, f64)| (point - contact.p_OC) * (weight / size);
@@ -191,9 +194,8 @@ pub const ENTRY: Entry = Entry {
     id: "stability-test/concurrent",
     slots: &[Slot::StabilityTest],
     summary: "three or more contacts push towards one point between them; sufficient, not necessary",
-    references: &[
-        "Ponce, Sullivan, Sudsang, Boissonnat, Merlet, On computing four-finger equilibrium and force-closure grasps of polyhedral objects, IJRR 1997",
-    ],
+    references: &["Ponce, Sullivan, Sudsang, Boissonnat, Merlet, On computing four-finger equilibrium and \
+            force-closure grasps of polyhedral objects, IJRR 1997"],
     schema: ConcurrentSettings::schema,
     check: check_settings::<ConcurrentSettings>,
     build: Build::StabilityTest(|json, _parts| {

@@ -46,7 +46,8 @@ impl FingersFirst {
 // ANCHOR_END: settings
 
 // ANCHOR: touch
-/// A random posture of the finger, bent so that its tip touches the object where it is nearest; `None` if it cannot be.
+/// A random posture of the finger, bent so that its tip touches the object where it is nearest; `None` if it
+/// cannot be.
 fn touch(
     task: &Task<'_>,
     X_HO: &Pose,
@@ -76,7 +77,8 @@ fn posture(task: &Task<'_>, finger: FingerIndex, random: &mut Random) -> FingerJ
 
 // ANCHOR: place
 impl FingersFirst {
-    /// Gives one finger a contact, beside the fingers already placed; the reason of the last failure if it finds none.
+    /// Gives one finger a contact, beside the fingers already placed; the reason of the last failure if it
+    /// finds none.
     fn place(
         &self,
         task: &Task<'_>,
@@ -216,7 +218,8 @@ pub const ENTRY: Entry = Entry {
     slots: &[Slot::Sampler],
     summary: "draws each finger's posture, and touches the object where its tip is nearest",
     references: &[
-        "Cortés, Siméon, Laumond, A random loop generator for planning the motions of closed kinematic chains using PRM methods, ICRA 2002",
+        "Cortés, Siméon, Laumond, A random loop generator for planning the motions of closed kinematic \
+            chains using PRM methods, ICRA 2002",
     ],
     schema: FingersFirstSettings::schema,
     check: check_settings::<FingersFirstSettings>,

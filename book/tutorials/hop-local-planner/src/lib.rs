@@ -1,4 +1,5 @@
-//! A local planner for the slot `local-planner.regrasp`: hop from contact to contact, higher if something is in the way.
+//! A local planner for the slot `local-planner.regrasp`: hop from contact to contact, higher if something is
+//! in the way.
 
 // ANCHOR: uses
 use regrasp_api::{

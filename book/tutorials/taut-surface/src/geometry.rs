@@ -27,7 +27,8 @@ pub(crate) fn closest_on_segment(a: &Vec3, b: &Vec3, p: &Vec3) -> Vec3 {
     a + along * ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
 }
 
-/// The point of a triangle closest to `p`: its foot on the plane if that lies inside, else on the nearest side.
+/// The point of a triangle closest to `p`: its foot on the plane if that lies inside, else on the nearest
+/// side.
 pub(crate) fn closest_on_facet(corners: &[Vec3; 3], p: &Vec3) -> Vec3 {
     let [a, b, c] = corners;
     let normal = (b - a).cross(&(c - a));

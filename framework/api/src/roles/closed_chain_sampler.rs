@@ -7,7 +7,8 @@ use crate::{CallError, Configuration, Contact, Context, FingerSet, PerFinger, Po
 pub enum PoseRequest<'a> {
     /// Anywhere in the task's workspace.
     Anywhere,
-    /// Near the given configuration: within `radius` (m) and `angle` (rad) of its pose; contacts near its contacts if that helps.
+    /// Near the given configuration: within `radius` (m) and `angle` (rad) of its pose; contacts near its
+    /// contacts if that helps.
     Near {
         /// The configuration to stay near.
         configuration: &'a Configuration,
@@ -22,12 +23,12 @@ pub enum PoseRequest<'a> {
 
 /// Samples configurations in which given fingers hold the object.
 pub trait ClosedChainSampler: Send + Sync {
-    /// One random admissible configuration with exactly the fingers `holding` in contact, or `None` after the sampler's own
-    /// number of tries.
+    /// One random admissible configuration with exactly the fingers `holding` in contact, or `None` after the
+    /// sampler's own number of tries.
     ///
-    /// Fingers that do not hold take their rest posture, or any posture in which they touch nothing. What is returned
-    /// has passed [`crate::Admissible::admit`]. Every failed try is counted with its reason. Pure in its arguments and
-    /// the context's random stream.
+    /// Fingers that do not hold take their rest posture, or any posture in which they touch nothing. What is
+    /// returned has passed [`crate::Admissible::admit`]. Every failed try is counted with its reason. Pure in
+    /// its arguments and the context's random stream.
     fn sample(
         &self,
         task: &Task<'_>,
@@ -36,8 +37,9 @@ pub trait ClosedChainSampler: Send + Sync {
         context: &mut Context<'_>,
     ) -> Result<Option<Configuration>, CallError>;
 
-    /// Closes the chains for given contacts at a given pose: the joints of every finger with a contact, close to `near`
-    /// where there is a choice; `None` if some finger cannot reach. Checks neither collision nor stability.
+    /// Closes the chains for given contacts at a given pose: the joints of every finger with a contact, close
+    /// to `near` where there is a choice; `None` if some finger cannot reach. Checks neither collision nor
+    /// stability.
     fn close(
         &self,
         task: &Task<'_>,

@@ -4,18 +4,20 @@ use crate::{Cone, Contact, FingerIndex};
 
 /// Says which wrenches a contact between fingertip and object can transmit: a cone as data.
 ///
-/// It may depend on the finger, on the contact (where on the object it lies, which way its normal points) and, as the model is built for one
-/// hand and object, on those. Laws: a cone is never wider than Coulomb's, `|f_t| ≤ μ f_n`; it holds the force along the normal; it depends on
-/// nothing but the arguments.
+/// It may depend on the finger, on the contact (where on the object it lies, which way its normal points)
+/// and, as the model is built for one hand and object, on those. Laws: a cone is never wider than Coulomb's,
+/// `|f_t| ≤ μ f_n`; it holds the force along the normal; it depends on nothing but the arguments.
 pub trait ContactModel: Send + Sync {
     /// The cone of one finger's contact under the friction coefficient `mu` ≥ 0 (no unit).
     ///
     /// Monotone: a larger `mu` gives a cone that contains the smaller one's.
     fn cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_>;
 
-    /// The cone of the same contact while it may spin about its normal, as in every transfer: a contact that spins transmits no torsion.
+    /// The cone of the same contact while it may spin about its normal, as in every transfer: a contact that
+    /// spins transmits no torsion.
     ///
-    /// Contained in [`ContactModel::cone`]. Provided: what is left of that cone without torsion ([`Cone::without_torsion`]).
+    /// Contained in [`ContactModel::cone`]. Provided: what is left of that cone without torsion
+    /// ([`Cone::without_torsion`]).
     fn spinning_cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
         let cone = self.cone(finger, contact, mu);
         if cone.carries_torsion() { cone.without_torsion() } else { cone }

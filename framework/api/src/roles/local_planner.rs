@@ -42,16 +42,19 @@ impl Reached {
 
 /// Connects a configuration with a target inside one kind of subspace: GS_n, transfer, or regrasp.
 ///
-/// Every state it stores is valid, and so is the motion between consecutive states, to half of the task's tolerances (but
-/// for the contacts of a grasp planner, which slide: its path is an aim that nobody executes, closes at its states, and in
-/// between to five tolerances, so that no joint jumps to another branch); the first stored state equals `from`, the last
-/// equals the returned end. A refusal is counted in the context with its reason by the local planner itself. Grasp and
-/// regrasp planners are all or nothing where it suits them: then `end` is `from` and `fraction` 0.
+/// Every state it stores is valid, and so is the motion between consecutive states, to half of the task's
+/// tolerances (but for the contacts of a grasp planner, which slide: its path is an aim that nobody executes,
+/// closes at its states, and in between to five tolerances, so that no joint jumps to another branch); the
+/// first stored state equals `from`, the last equals the returned end. A refusal is counted in the context
+/// with its reason by the local planner itself. Grasp and regrasp planners are all or nothing where it suits
+/// them: then `end` is `from` and `fraction` 0.
 ///
-/// While the object moves, and along a path in GS_n, the grasp must hold as [`Task::transfer_grasp`] gives it, in a regrasp as
-/// [`Task::grasp`] does. How contacts move in a transfer is the fingertips' matter ([`crate::Hand::fingertip`]): balls roll, points stay.
+/// While the object moves, and along a path in GS_n, the grasp must hold as [`Task::transfer_grasp`] gives
+/// it, in a regrasp as [`Task::grasp`] does. How contacts move in a transfer is the fingertips' matter
+/// ([`crate::Hand::fingertip`]): balls roll, points stay.
 pub trait LocalPlanner: Send + Sync {
-    /// Goes from `from` towards `to`; restarts and fills `path` if given (`None` = check only, store nothing).
+    /// Goes from `from` towards `to`; restarts and fills `path` if given (`None` = check only, store
+    /// nothing).
     fn connect(
         &self,
         task: &Task<'_>,

@@ -25,16 +25,17 @@ pub struct HandDescription {
     pub palm: Vec<PlacedShape>,
     /// The fingers, in the order in which everything counts them.
     pub finger: Vec<FingerDescription>,
-    /// Pairs of bodies that touch by construction and are never compared, beside those that always are left out (consecutive links of a
-    /// finger; the palm and a first link that touch in the resting posture). A body is named by `palm`, by the joint before the link, or,
-    /// for a fingertip's ball, by its finger.
+    /// Pairs of bodies that touch by construction and are never compared, beside those that always are left
+    /// out (consecutive links of a finger; the palm and a first link that touch in the resting posture). A
+    /// body is named by `palm`, by the joint before the link, or, for a fingertip's ball, by its finger.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("examples" = [[["palm", "thumb-base"]]]))]
     pub touching: Vec<[String; 2]>,
 }
 
 impl HandDescription {
-    /// The body that `touching` calls by this name: `palm`, a joint (the link behind it) or a finger (its fingertip's ball).
+    /// The body that `touching` calls by this name: `palm`, a joint (the link behind it) or a finger (its
+    /// fingertip's ball).
     ///
     /// `None` where nothing, or more than one thing, has the name.
     pub fn body_named(&self, name: &str) -> Option<Body> {
@@ -74,9 +75,10 @@ pub enum Fingertip {
     /// A ball: it rolls, and the contact moves over both bodies.
     #[default]
     Ball,
-    /// A point that stays where it was set down and about which the finger turns freely (the point contact of grasp statics). The ball is its
-    /// collision shape: its centre keeps the place over the object that it had at touch-down, one radius above the contact along the
-    /// surface's normal there. What this neglects is of the order of the radius: a declared point wants a small one.
+    /// A point that stays where it was set down and about which the finger turns freely (the point contact of
+    /// grasp statics). The ball is its collision shape: its centre keeps the place over the object that it
+    /// had at touch-down, one radius above the contact along the surface's normal there. What this neglects
+    /// is of the order of the radius: a declared point wants a small one.
     Point,
 }
 
@@ -148,7 +150,8 @@ pub struct JointDescription {
     pub link: Vec<PlacedShape>,
 }
 
-/// A joint that another one of the same finger drives, as by a tendon or a gear: q = `multiplier` · q of `joint` + `offset`.
+/// A joint that another one of the same finger drives, as by a tendon or a gear: q = `multiplier` · q of
+/// `joint` + `offset`.
 ///
 /// It counts as a joint everywhere (plans hold its position), but is none that a finger can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -10,7 +10,7 @@ pub struct Tolerances {
     /// Largest distance between a holding fingertip and the surface (m).
     #[schemars(range(min = 1e-7, max = 1e-2), extend("x-unit" = "m"))]
     pub closure: f64,
-    /// Largest net slip of a contact over one transfer (m).
+    /// Largest net slip of a contact from its finger's touch-down to its lift (m).
     #[schemars(range(min = 1e-7, max = 1e-2), extend("x-unit" = "m"))]
     pub slip: f64,
     /// Largest angle between a contact's normal and the surface's (rad).
@@ -71,10 +71,12 @@ pub struct Resolution {
     /// Distance that contacts keep from a sharp edge when they are chosen (m).
     #[schemars(range(min = 0.0, max = 0.1), extend("x-unit" = "m"))]
     pub edge_margin: f64,
-    /// What the friction coefficient is multiplied with while planning (no unit), so that grasps keep a margin.
+    /// What the friction coefficient is multiplied with while planning (no unit), so that grasps keep a
+    /// margin.
     ///
-    /// The paper counts with all of it. A grasp that closes by the last of the friction alone needs large forces in exact directions, and plans are to be
-    /// carried out: simulated, 47 of 50 plans of `cubic` arrive with 0.8, 36 with 0.95.
+    /// The paper counts with all of it. A grasp that closes by the last of the friction alone needs large
+    /// forces in exact directions, and plans are to be carried out: simulated, 47 of 50 plans of `cubic`
+    /// arrive with 0.8, 36 with 0.95.
     #[schemars(range(min = 0.01, max = 1.0), extend("x-unit" = "1"))]
     pub friction_margin: f64,
 }
@@ -101,8 +103,8 @@ impl Default for Resolution {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Budget {
-    /// Most nodes to generate for one goal. The default is five times what the hardest built-in scenario needs, and tens of seconds where
-    /// there is no way.
+    /// Most nodes to generate for one goal. The default is five times what the hardest built-in scenario
+    /// needs, and tens of seconds where there is no way.
     #[schemars(range(min = 1, max = 10_000_000))]
     pub max_nodes: usize,
     /// Most time for the whole run (s); no limit where absent.

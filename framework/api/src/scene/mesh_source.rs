@@ -67,7 +67,8 @@ impl MeshSource {
         }
     }
 
-    /// The mesh of these vertices (in the unit that `scale` makes metres of) and facets, scaled and turned as the source wants.
+    /// The mesh of these vertices (in the unit that `scale` makes metres of) and facets, scaled and turned as
+    /// the source wants.
     pub fn adjusted(
         &self,
         mut vertices: Vec<Vec3>,

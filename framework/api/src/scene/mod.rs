@@ -5,6 +5,7 @@ mod hold;
 mod limits;
 mod mesh_source;
 mod object;
+mod pose;
 mod problem;
 
 pub use hand::*;
@@ -12,4 +13,5 @@ pub use hold::*;
 pub use limits::*;
 pub use mesh_source::*;
 pub use object::*;
+pub use pose::*;
 pub use problem::*;

@@ -2,8 +2,8 @@
 
 /// The candidates that resemble `name`, best first, at most three.
 ///
-/// On lower-case text: a Jaro-Winkler similarity of at least 0.8, one slip of the keys (a letter too many, too few, wrong, or two in the wrong
-/// order), or one name inside the other.
+/// On lower-case text: a Jaro-Winkler similarity of at least 0.8, one slip of the keys (a letter too many,
+/// too few, wrong, or two in the wrong order), or one name inside the other.
 pub fn near<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Vec<String> {
     let name = name.to_lowercase();
     let mut scored: Vec<(f64, &str)> = candidates

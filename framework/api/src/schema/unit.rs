@@ -11,8 +11,8 @@ pub const UNITS: &[&str] = &[
     "s⁻¹",
 ];
 
-/// The unit of a schema's number: `m`, or `rad; m where prismatic` where it depends. `None` where the number has none, or where the
-/// schema does not say.
+/// The unit of a schema's number: `m`, or `rad; m where prismatic` where it depends. `None` where the number
+/// has none, or where the schema does not say.
 pub fn unit(schema: &Value) -> Option<&str> {
     schema.get(UNIT_KEY)?.as_str().filter(|unit| *unit != "1")
 }

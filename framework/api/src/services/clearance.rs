@@ -42,9 +42,10 @@ pub struct PairDistance {
 
 /// Collision and distance.
 ///
-/// The `*_free` calls are for the search: a conservative bound may decide; they answer "free" only where every pair is
-/// truly farther apart than the clearance it was built with. Each returns the first pair that is too close. Pairs that
-/// touch by construction (consecutive links, a link and its own fingertip) are never compared.
+/// The `*_free` calls are for the search: a conservative bound may decide; they answer "free" only where
+/// every pair is truly farther apart than the clearance it was built with. Each returns the first pair that
+/// is too close. Pairs that touch by construction (consecutive links, a link and its own fingertip) are never
+/// compared.
 pub trait Clearance: Send + Sync {
     /// The object against palm and obstacles.
     fn object_free(&self, X_HO: &Pose) -> Result<(), BodyPair>;
@@ -65,8 +66,8 @@ pub trait Clearance: Send + Sync {
         b: (FingerIndex, &FingerJoints),
     ) -> Result<(), BodyPair>;
 
-    /// A whole configuration, tips that hold touching: every pair that involves a finger of `moved`, or the object if
-    /// `object_moved`.
+    /// A whole configuration, tips that hold touching: every pair that involves a finger of `moved`, or the
+    /// object if `object_moved`.
     fn configuration_free(
         &self,
         q: &Configuration,
@@ -74,8 +75,8 @@ pub trait Clearance: Send + Sync {
         object_moved: bool,
     ) -> Result<(), BodyPair>;
 
-    /// One finger that moves while the object of `resting` and the fingers in `among` rest there: what rests is placed once,
-    /// for the many postures of one regrasp.
+    /// One finger that moves while the object of `resting` and the fingers in `among` rest there: what rests
+    /// is placed once, for the many postures of one regrasp.
     fn lone_finger<'a>(
         &'a self,
         finger: FingerIndex,
@@ -85,7 +86,8 @@ pub trait Clearance: Send + Sync {
         Box::new(Pairwise { clearance: self, finger, resting, among: among.without(finger) })
     }
 
-    /// The exact distances of all pairs that may not touch, at most `limit` (m) apart; for what is shown to a user.
+    /// The exact distances of all pairs that may not touch, at most `limit` (m) apart; for what is shown to a
+    /// user.
     fn distances(&self, q: &Configuration, limit: f64) -> Vec<PairDistance>;
 }
 const _: Option<&dyn Clearance> = None; // must stay object safe

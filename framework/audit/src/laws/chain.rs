@@ -15,7 +15,8 @@ pub struct Chain<'a> {
     pub closure: f64,
 }
 
-/// Laws `finite`, `holding`, `limits`, `closed`, `contact-on-surface` of one configuration, whose fingers `holding` touch.
+/// Laws `finite`, `holding`, `limits`, `closed`, `contact-on-surface` of one configuration, whose fingers
+/// `holding` touch.
 pub fn chain_kept(chain: &Chain<'_>, q: &Configuration, holding: FingerSet) -> Kept {
     let p = q.X_HO.translation.vector;
     let orientation = q.X_HO.rotation.coords;

@@ -6,7 +6,8 @@ use regrasp_api::{Cone, Vec3};
 /// How far a cone may stand out beyond another by rounding alone (no unit).
 const ROUNDING: f64 = 1e-9;
 
-/// The largest value over the cone's slice at unit normal force of the product with `w` = (t1, t2, torsion / m).
+/// The largest value over the cone's slice at unit normal force of the product with `w` = (t1, t2, torsion /
+/// m).
 pub fn support(cone: &Cone<'_>, w: &Vec3) -> f64 {
     match cone {
         Cone::Elliptic { mu, gamma } => (mu * mu * (w.x * w.x + w.y * w.y) + (gamma * w.z).powi(2)).sqrt(),

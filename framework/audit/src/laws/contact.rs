@@ -20,9 +20,11 @@ pub struct Ground<'a> {
     pub radius: f64,
 }
 
-/// Law `contact-on-surface`: a finite point of the mesh, and a unit normal along which a fingertip touches there and nowhere deeper.
+/// Law `contact-on-surface`: a finite point of the mesh, and a unit normal along which a fingertip touches
+/// there and nowhere deeper.
 ///
-/// On an object that is not convex, a neighbouring part may be nearer than the touch: then only point and length are checked.
+/// On an object that is not convex, a neighbouring part may be nearer than the touch: then only point and
+/// length are checked.
 pub fn contact_on_surface(ground: &Ground<'_>, contact: &Contact) -> Kept {
     const LAW: &str = "contact-on-surface";
     let Contact { facet, p_OC, n_O } = contact;
@@ -57,7 +59,8 @@ fn on_facet(ground: &Ground<'_>, facet: u32, p: &Vec3) -> bool {
     (closest_on_facet(ground.mesh, facet, p) - p).norm() <= ON_SURFACE
 }
 
-/// Law `project-closest`: the point of the mesh closest to `p_OF` (m), its distance, and the normal towards it.
+/// Law `project-closest`: the point of the mesh closest to `p_OF` (m), its distance, and the normal towards
+/// it.
 pub fn projection_kept(ground: &Ground<'_>, p_OF: &Vec3, found: &Projection) -> Kept {
     const LAW: &str = "project-closest";
     let true_distance = closest_on_mesh(ground.mesh, p_OF).distance;

@@ -76,7 +76,8 @@ fn inside(contact: &GraspContact<'_>, f: &Vec3, m: f64) -> bool {
     let normal = f.dot(&inward);
     let [t1, t2] = tangents(&inward);
     let at = Vec3::new(f.dot(&t1), f.dot(&t2), m) / normal;
-    // A convex set holds a point where no direction tells them apart; the directions are those of the point and of the kit.
+    // A convex set holds a point where no direction tells them apart; the directions are those of the point
+    // and of the kit.
     super::cone::directions().chain([at]).all(|w| at.dot(&w) <= support(&contact.cone, &w) + 1e-7 * w.norm())
 }
 

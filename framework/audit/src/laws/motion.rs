@@ -33,7 +33,8 @@ pub fn reached_kept(reached: &Reached) -> Kept {
     })
 }
 
-/// Law `reasons`: one refusal is counted in the planner's slot where it stopped short, for the reason that it gives; none where it did not.
+/// Law `reasons`: one refusal is counted in the planner's slot where it stopped short, for the reason that it
+/// gives; none where it did not.
 pub fn refusal_counted(slot: Slot, reached: &Reached, tally: &Tally) -> Kept {
     let counted: u64 = Reason::ALL.iter().map(|&reason| tally.rejections(slot, reason)).sum();
     match reached.stop {
@@ -69,7 +70,8 @@ pub fn target_kept(motion: &Motion<'_>) -> Kept {
     ensure("target", there, || "it says that it arrived, and ends elsewhere".into())
 }
 
-/// Laws of the states and of the motion between them: closed, within limits, free, stable, in small steps, without slip.
+/// Laws of the states and of the motion between them: closed, within limits, free, stable, in small steps,
+/// without slip.
 pub fn states_kept(motion: &Motion<'_>, context: &mut Context<'_>) -> Kept {
     let states = &motion.path.states;
     let moving = match motion.to {
@@ -185,7 +187,8 @@ fn small_step(motion: &Motion<'_>, a: &Configuration, b: &Configuration) -> Kept
     })
 }
 
-/// Half way between two states the holding fingertips still touch, to half of the tolerance; in GS_n to five of them.
+/// Half way between two states the holding fingertips still touch, to half of the tolerance; in GS_n to five
+/// of them.
 fn between(motion: &Motion<'_>, a: &Configuration, b: &Configuration, moving: Option<FingerIndex>) -> Kept {
     if moving.is_some() {
         return Ok(());
@@ -205,7 +208,8 @@ fn between(motion: &Motion<'_>, a: &Configuration, b: &Configuration, moving: Op
     Ok(())
 }
 
-/// Slip adds up, as vectors in the object's frame, from the start to any state; point fingertips keep their contacts.
+/// Slip adds up, as vectors in the object's frame, from the start to any state; point fingertips keep their
+/// contacts.
 fn no_slip(motion: &Motion<'_>) -> Kept {
     let task = motion.chain.task;
     let allowed = 0.5 * task.tolerances.slip * 1.1;

@@ -19,7 +19,8 @@ impl Touch {
         Some(Self { p_HF: tip.p_HF, R_HF: tip.R_HF, X_HO: q.X_HO, p_OC: contact.p_OC, n_O: contact.n_O })
     }
 
-    /// How far (m, in O, along the surface) the tip's material point at this contact moves against the object's until `other`.
+    /// How far (m, in O, along the surface) the tip's material point at this contact moves against the
+    /// object's until `other`.
     fn shift(&self, other: &Self) -> Vec3 {
         let contact_H = self.X_HO.rotation * self.p_OC + self.X_HO.translation.vector;
         let p_FC = self.R_HF.inverse() * (contact_H - self.p_HF);
@@ -29,7 +30,8 @@ impl Touch {
         apart - self.n_O * self.n_O.dot(&apart)
     }
 
-    /// The slip (m, in O) on the way to `later`: half of each way of taking the contact, exact to second order.
+    /// The slip (m, in O) on the way to `later`: half of each way of taking the contact, exact to second
+    /// order.
     pub fn slip(&self, later: &Self) -> Vec3 {
         0.5 * (self.shift(later) - later.shift(self))
     }

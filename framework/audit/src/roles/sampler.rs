@@ -45,7 +45,8 @@ impl ClosedChainSampler for Audited<'_, dyn ClosedChainSampler + '_> {
                 laws::chain_kept(&self.chain(task), q, holding)?;
                 laws::pose_kept(task, &pose, q)?;
                 match task.admissible.admit(task, q, &mut context.twin()) {
-                    Ok(Some(reason)) => laws::broken("sample-admissible", format!("refused for `{}`", reason.name())),
+                    Ok(Some(reason)) => laws::broken("sample-admissible", format!("refused for \
+                        `{}`", reason.name())),
                     _ => Ok(()),
                 }
             },

@@ -6,8 +6,8 @@ use regrasp_api::{CallError, Contact, Context, Projection, Random, SurfaceParam,
 use serde_json::json;
 use std::cell::RefCell;
 
-/// Of how many projections one is compared with all facets, which takes longer than the plugin does: told by the position's bits, so that the
-/// same calls are looked at in every run.
+/// Of how many projections one is compared with all facets, which takes longer than the plugin does: told by
+/// the position's bits, so that the same calls are looked at in every run.
 const RARE: u64 = 16;
 
 fn alike<T: PartialEq>(first: &T, again: &T) -> Kept {

@@ -23,7 +23,8 @@ impl ContactModel for RoundCones {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SoftCones;
 
-/// Torsional friction radius (m) of [`SoftCones`]: under uniform pressure that of a patch of 8 mm radius with μ = 0.8.
+/// Torsional friction radius (m) of [`SoftCones`]: under uniform pressure that of a patch of 8 mm radius with
+/// μ = 0.8.
 const GAMMA: f64 = 0.004;
 
 impl ContactModel for SoftCones {

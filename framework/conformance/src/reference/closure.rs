@@ -1,8 +1,9 @@
 //! Force closure by linear programming over cones with many edges: slow, simple, and with a known error.
 //!
-//! A grasp is force closure where the origin lies strictly inside the hull of the wrenches at unit normal force (Mishra, Schwartz, Sharir,
-//! "On the existence and synthesis of multifinger positive grips", Algorithmica 1987). Inside a round cone lies one with m edges, around it
-//! another; where the inner one closes the grasp does, and where the outer one does not the grasp does not.
+//! A grasp is force closure where the origin lies strictly inside the hull of the wrenches at unit normal
+//! force (Mishra, Schwartz, Sharir, "On the existence and synthesis of multifinger positive grips",
+//! Algorithmica 1987). Inside a round cone lies one with m edges, around it another; where the inner one
+//! closes the grasp does, and where the outer one does not the grasp does not.
 
 use super::nonnegative::nonnegative_least_squares;
 use nalgebra::Vector6;
@@ -12,10 +13,12 @@ use regrasp_api::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Edges of the cones that stand for a round one, and points of the surface that stands for a soft finger's ellipsoid.
+/// Edges of the cones that stand for a round one, and points of the surface that stands for a soft finger's
+/// ellipsoid.
 const EDGES: usize = 32;
 const POINTS: usize = 120;
-/// By how much the outer surface of points is larger than the inner one, so that its hull holds the ellipsoid.
+/// By how much the outer surface of points is larger than the inner one, so that its hull holds the
+/// ellipsoid.
 const SWELL: f64 = 1.07;
 
 /// What linear programming proves about a grasp.
@@ -37,8 +40,8 @@ pub fn closure(grasp: &Grasp<'_>) -> Closure {
     if positively_spans(&wrenches(grasp, true)).is_none() { Closure::Open } else { Closure::Near }
 }
 
-/// Whether the contacts can give a force and a torque about the contacts' centroid, however large, inside cones that are a little too wide:
-/// where not, nothing carries that load.
+/// Whether the contacts can give a force and a torque about the contacts' centroid, however large, inside
+/// cones that are a little too wide: where not, nothing carries that load.
 pub(crate) fn may_give(grasp: &Grasp<'_>, force: &Vec3, torque: &Vec3) -> bool {
     let (_, length) = center_and_length(grasp);
     let vectors: Vec<_> = wrenches(grasp, true).iter().map(|w| w.scaled).collect();
@@ -47,7 +50,8 @@ pub(crate) fn may_give(grasp: &Grasp<'_>, force: &Vec3, torque: &Vec3) -> bool {
     nonnegative_least_squares(&vectors, &wish).1.norm() <= 1e-7 * wish.norm()
 }
 
-/// One wrench that a contact can transmit at unit normal force: force, torque about the normal, force with torque about the centroid.
+/// One wrench that a contact can transmit at unit normal force: force, torque about the normal, force with
+/// torque about the centroid.
 struct Wrench {
     contact: usize,
     f_O: Vec3,
@@ -85,7 +89,8 @@ pub(crate) fn tangents(n: &Vec3) -> (Vec3, Vec3) {
     (t1, n.cross(&t1))
 }
 
-/// Points (tangential force, torsion) whose hull lies inside, or around, the slice of the cone at unit normal force.
+/// Points (tangential force, torsion) whose hull lies inside, or around, the slice of the cone at unit normal
+/// force.
 fn slice(contact: &GraspContact<'_>, outer: bool) -> Vec<[f64; 3]> {
     match &contact.cone {
         Cone::Polyhedral(edges) => {
@@ -199,7 +204,8 @@ mod tests {
         assert_eq!(verdict(&pair), Closure::Closed);
     }
 
-    /// Two contacts on parallel planes a distance `h` apart and offset by `d` along them close, with a third, just where d/h < μ.
+    /// Two contacts on parallel planes a distance `h` apart and offset by `d` along them close, with a third,
+    /// just where d/h < μ.
     #[test]
     fn the_critical_friction_of_an_offset_pair_is_bracketed() {
         let pair = |d: f64, mu: f64| {

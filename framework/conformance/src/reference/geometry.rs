@@ -1,6 +1,6 @@
 //! Closest points and signed distances in closed form; those over all facets are the audit's.
 
-use regrasp_api::{Primitive, Vec3};
+use regrasp_api::{Mesh, Primitive, Vec3};
 pub use regrasp_audit::{Closest, closest_on_facet, closest_on_mesh, closest_on_segment};
 
 /// The closest point of the closed form to `p` (m, in its frame).
@@ -52,8 +52,9 @@ fn on_cuboid(half: &Vec3, p: &Vec3) -> (Vec3, bool) {
     (point, inside)
 }
 
-/// The closest point of an ellipsoid: x_i = a_i² p_i / (t + a_i²) with the largest root t of the condition that it lies on the surface
-/// (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid", 2013), by bisection.
+/// The closest point of an ellipsoid: x_i = a_i² p_i / (t + a_i²) with the largest root t of the condition
+/// that it lies on the surface (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a
+/// hyperellipsoid", 2013), by bisection.
 fn on_ellipsoid(semi_axes: &Vec3, p: &Vec3) -> Vec3 {
     let square = semi_axes.component_mul(semi_axes);
     let at = |t: f64| p.zip_map(&square, |x, a| x * a / (t + a));
@@ -66,14 +67,20 @@ fn on_ellipsoid(semi_axes: &Vec3, p: &Vec3) -> Vec3 {
     at(high)
 }
 
+/// The facets that hold a point.
+pub(super) fn facets_at(mesh: &Mesh, p: &Vec3) -> Vec<u32> {
+    let near = |&facet: &u32| (closest_on_facet(mesh, facet, p) - p).norm() < 1e-9;
+    (0..mesh.facets().len() as u32).filter(near).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use regrasp_api::Mesh;
     use regrasp_world::primitive_mesh;
 
-    /// Whether the facets' solid angles add up to a full sphere (Van Oosterom & Strackee, "The solid angle of a plane triangle", IEEE
-    /// Trans. Biomed. Eng. 1983).
+    /// Whether the facets' solid angles add up to a full sphere (Van Oosterom & Strackee, "The solid angle of
+    /// a plane triangle", IEEE Trans. Biomed. Eng. 1983).
     fn is_inside(mesh: &Mesh, p: &Vec3) -> bool {
         let angle = |facet: u32| {
             let [a, b, c] = mesh.corners(facet).map(|corner| corner - p);

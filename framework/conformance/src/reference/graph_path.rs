@@ -1,7 +1,8 @@
 //! Shortest paths over points on a mesh's edges, by Dijkstra's algorithm.
 //!
-//! E. Dijkstra, "A note on two problems in connexion with graphs", Numerische Mathematik 1959; the points on edges are those of M. Lanthier, A. Maheshwari,
-//! J.-R. Sack, "Approximating weighted shortest paths on polyhedral surfaces", SoCG 1997.
+//! E. Dijkstra, "A note on two problems in connexion with graphs", Numerische Mathematik 1959; the points on
+//! edges are those of M. Lanthier, A. Maheshwari, J.-R. Sack, "Approximating weighted shortest paths on
+//! polyhedral surfaces", SoCG 1997.
 
 use regrasp_api::{Mesh, Vec3};
 use std::cmp::Reverse;
@@ -42,7 +43,8 @@ impl SteinerGraph {
         Self { points, of_facet, facets_of }
     }
 
-    /// Length (m) and pieces of the shortest path between two points, each given with the facets that hold it.
+    /// Length (m) and pieces of the shortest path between two points, each given with the facets that hold
+    /// it.
     pub fn shortest(&self, from: &(Vec3, Vec<u32>), to: &(Vec3, Vec<u32>)) -> Option<(f64, Vec<Leg>)> {
         if let Some(&facet) = from.1.iter().find(|facet| to.1.contains(facet)) {
             return Some(((to.0 - from.0).norm(), vec![(facet, from.0, to.0)]));

@@ -9,7 +9,8 @@ use regrasp_api::{
 /// The largest change of a joint from one state to the next (rad or m).
 const JUMP: f64 = 0.4;
 
-/// Moves the pose straight and the contacts along geodesics, in steps of a third of the task's resolution; all or nothing.
+/// Moves the pose straight and the contacts along geodesics, in steps of a third of the task's resolution;
+/// all or nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GraspLine;
 

@@ -7,8 +7,9 @@ const MOST_STEPS: usize = 500;
 
 /// The weights s ≥ 0 that make |Σ sⱼ aⱼ - b| least, and the remainder b - Σ sⱼ aⱼ.
 ///
-/// Active sets (Lawson & Hanson, "Solving Least Squares Problems", 1974, chapter 23). At the end no vector makes an acute angle with the
-/// remainder, up to rounding: where it is not zero it separates b from the cone of the vectors.
+/// Active sets (Lawson & Hanson, "Solving Least Squares Problems", 1974, chapter 23). At the end no vector
+/// makes an acute angle with the remainder, up to rounding: where it is not zero it separates b from the cone
+/// of the vectors.
 pub(super) fn nonnegative_least_squares(a: &[Vector6<f64>], b: &Vector6<f64>) -> (Vec<f64>, Vector6<f64>) {
     let size = a.iter().map(|v| v.norm()).fold(1e-300, f64::max);
     let mut s = vec![0.0; a.len()];
@@ -79,7 +80,8 @@ mod tests {
             let inside = a.iter().enumerate().fold(Vector6::zeros(), |sum, (j, v)| sum + v * (j % 3) as f64);
             let (s, remainder) = nonnegative_least_squares(&a, &inside);
             assert!(remainder.norm() < 1e-9 * inside.norm() && s.iter().all(|&x| x >= 0.0));
-            // Five vectors reach a thin cone only: the remainder is what is orthogonal or obtuse to all of them.
+            // Five vectors reach a thin cone only: the remainder is what is orthogonal or obtuse to all of
+            // them.
             let b = vector();
             let (_, remainder) = nonnegative_least_squares(&a[..5], &b);
             assert!(remainder.norm() > 0.0);

@@ -1,6 +1,6 @@
 //! The reference surface: the object's facets, everything by brute force.
 
-use super::geometry::{closest_on_facet, closest_on_mesh, closest_on_segment};
+use super::geometry::{closest_on_mesh, closest_on_segment, facets_at};
 use super::graph_path::SteinerGraph;
 use super::walk;
 use regrasp_api::{
@@ -12,8 +12,8 @@ const SHARP: f64 = std::f64::consts::PI / 6.0;
 
 /// The facets of a mesh under a fingertip.
 ///
-/// Shortest paths run over points on the edges (Lanthier, Maheshwari, Sack, "Approximating weighted shortest paths on polyhedral
-/// surfaces", SoCG 1997) and are up to 1 % too long.
+/// Shortest paths run over points on the edges (Lanthier, Maheshwari, Sack, "Approximating weighted shortest
+/// paths on polyhedral surfaces", SoCG 1997) and are up to 1 % too long.
 pub struct FacetSurface {
     mesh: Mesh,
     radius: f64,
@@ -27,12 +27,6 @@ impl FacetSurface {
         let areas: Vec<f64> = (0..mesh.facets().len() as u32).map(|facet| mesh.area(facet)).collect();
         let spacing = areas.iter().sum::<f64>().sqrt() / 45.0;
         Self { graph: SteinerGraph::new(mesh, spacing), mesh: mesh.clone(), radius, areas }
-    }
-
-    /// The facets that hold a point.
-    pub(super) fn facets_at(mesh: &Mesh, p: &Vec3) -> Vec<u32> {
-        let near = |&facet: &u32| (closest_on_facet(mesh, facet, p) - p).norm() < 1e-9;
-        (0..mesh.facets().len() as u32).filter(near).collect()
     }
 }
 
@@ -65,7 +59,7 @@ impl SurfaceParam for FacetSurface {
         if from == to {
             return Ok(true);
         }
-        let ends = [from, to].map(|end| (end.p_OC, Self::facets_at(&self.mesh, &end.p_OC)));
+        let ends = [from, to].map(|end| (end.p_OC, facets_at(&self.mesh, &end.p_OC)));
         let Some((length, legs)) = self.graph.shortest(&ends[0], &ends[1]) else { return Ok(false) };
         let mut last = *from;
         let mut advance = |contact: Contact| {

@@ -1,6 +1,6 @@
 //! Straight ahead over facets, unfolding each edge that is crossed.
 
-use super::surface::FacetSurface;
+use super::geometry::facets_at;
 use regrasp_api::{Contact, Mesh, Vec3};
 
 /// The contact `distance` (m) ahead of `from` along the tangential part of `direction_O`.
@@ -53,6 +53,6 @@ fn facet_ahead(mesh: &Mesh, from: &Contact, direction_O: &Vec3) -> u32 {
         let there = from.p_OC + step - n * n.dot(&step);
         (super::geometry::closest_on_facet(mesh, *facet, &there) - there).norm()
     };
-    let facets = FacetSurface::facets_at(mesh, &from.p_OC);
+    let facets = facets_at(mesh, &from.p_OC);
     facets.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(from.facet)
 }

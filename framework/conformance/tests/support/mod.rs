@@ -4,8 +4,8 @@
 use regrasp_api::{Entry, Slot};
 use regrasp_conformance::{check, checks};
 
-/// Breaks unless the honest entry passes, each liar fails exactly the check that it is paired with, and every check of the slot that
-/// applies to `of_slot` has a liar.
+/// Breaks unless the honest entry passes, each liar fails exactly the check that it is paired with, and every
+/// check of the slot that applies to `of_slot` has a liar.
 pub fn judge(slot: Slot, honest: &Entry, liars: &[(Entry, &str)], elsewhere: &[&str]) {
     check(honest).assert_passes();
     let mut missed = String::new();

@@ -33,7 +33,8 @@ impl Buffer {
         accessor
     }
 
-    /// Rotations as quaternions x, y, z, w, each on the side of the one before, so that none goes the long way.
+    /// Rotations as quaternions x, y, z, w, each on the side of the one before, so that none goes the long
+    /// way.
     pub fn rotations(&mut self, rotations: impl IntoIterator<Item = Rotation>) -> usize {
         let mut values: Vec<[f32; 4]> = Vec::new();
         let mut before = None;

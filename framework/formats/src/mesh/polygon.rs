@@ -9,8 +9,9 @@ const TOO_MANY: usize = 2000;
 
 /// Appends the triangles of the polygon with these corners (indices into `vertices`), by cutting ears.
 ///
-/// Seen along the polygon's mean normal, an ear is a convex corner whose triangle holds no other corner (Meisters,
-/// "Polygons have ears", Am. Math. Monthly 1975). A polygon that has no ear left (it crosses itself) or too many corners is cut as a fan.
+/// Seen along the polygon's mean normal, an ear is a convex corner whose triangle holds no other corner
+/// (Meisters, "Polygons have ears", Am. Math. Monthly 1975). A polygon that has no ear left (it crosses
+/// itself) or too many corners is cut as a fan.
 pub(super) fn triangulate(corners: &[u32], vertices: &[Vec3], facets: &mut Vec<[u32; 3]>) {
     let at = |index: u32| vertices.get(index as usize).copied().unwrap_or_default();
     let mut rest = corners.to_vec();

@@ -56,8 +56,10 @@ fn obj(mesh: &Mesh) -> String {
 fn ply(mesh: &Mesh, format: &str) -> Vec<u8> {
     let (vertices, facets) = (mesh.vertices().len(), mesh.facets().len());
     let mut bytes = format!(
-        "ply\r\nformat {format} 1.0\ncomment made up\nelement vertex {vertices}\nproperty uchar red\nproperty double x\n\
-         property double y\nproperty double z\nelement face {facets}\nproperty list uchar int vertex_indices\nelement \
+        "ply\r\nformat {format} 1.0\ncomment made up\nelement vertex {vertices}\nproperty uchar \
+            red\nproperty double x\n\
+         property double y\nproperty double z\nelement face {facets}\nproperty list uchar int \
+         vertex_indices\nelement \
          extra 1\nproperty float nothing\nend_header\n"
     )
     .into_bytes();
@@ -303,7 +305,8 @@ fn a_path_is_looked_for_below_the_base_and_an_absolute_one_as_it_is() {
     assert!(load_mesh(&source, Path::new("/nowhere"), "object.shape").is_ok());
 }
 
-/// A COLLADA file of a cube in centimetres: half of its sides as triangles, half as polygons, below a node that turns and mirrors it.
+/// A COLLADA file of a cube in centimetres: half of its sides as triangles, half as polygons, below a node
+/// that turns and mirrors it.
 fn dae() -> String {
     let corners: Vec<String> = (0..8).map(|i| format!("{} {} {}", i & 1, i >> 1 & 1, i >> 2)).collect();
     format!(
@@ -313,16 +316,21 @@ fn dae() -> String {
          <source id='places'><float_array id='numbers' count='24'>{}</float_array>
          <technique_common><accessor source='#numbers' count='8' stride='3'/></technique_common></source>
          <vertices id='corners'><input semantic='POSITION' source='#places'/></vertices>
-         <triangles count='4'><input semantic='NORMAL' source='#places' offset='1'/><input semantic='VERTEX' source='#corners' offset='0'/>
+         <triangles count='4'><input semantic='NORMAL' source='#places' offset='1'/><input \
+         semantic='VERTEX' source='#corners' offset='0'/>
          <p>0 7 2 7 3 7  0 7 3 7 1 7</p><p>4 0 5 0 7 0  4 0 7 0 6 0</p></triangles>
-         <polylist count='2'><input semantic='VERTEX' source='#corners' offset='0'/><vcount>4 4</vcount><p>0 1 5 4 2 6 7 3</p></polylist>
+         <polylist count='2'><input semantic='VERTEX' source='#corners' offset='0'/><vcount>4 \
+         4</vcount><p>0 1 5 4 2 6 7 3</p></polylist>
          <polygons count='1'><input semantic='VERTEX' source='#corners' offset='0'/><p>0 4 6 2</p></polygons>
-         <tristrips count='1'><input semantic='VERTEX' source='#corners' offset='0'/><p>1 3 5 7</p></tristrips>
+         <tristrips count='1'><input semantic='VERTEX' source='#corners' offset='0'/><p>1 3 5 \
+         7</p></tristrips>
          <lines count='1'><input semantic='VERTEX' source='#corners' offset='0'/><p>0 1</p></lines>
          </mesh></geometry></library_geometries>
-         <library_nodes><node id='shared'><scale>2 2 2</scale><instance_geometry url='#cube'/></node></library_nodes><library_visual_scenes><visual_scene id='scene'>
+         <library_nodes><node id='shared'><scale>2 2 2</scale><instance_geometry \
+         url='#cube'/></node></library_nodes><library_visual_scenes><visual_scene id='scene'>
          <node><translate>10 0 0</translate><rotate>0 0 1 90</rotate>
-         <node><matrix>-1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1</matrix><instance_node url='#shared'/></node></node></visual_scene>
+         <node><matrix>-1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1</matrix><instance_node \
+         url='#shared'/></node></node></visual_scene>
          </library_visual_scenes><scene><instance_visual_scene url='#scene'/></scene></COLLADA>",
         corners.join(" ")
     )
@@ -336,7 +344,8 @@ fn collada_is_read_with_its_unit_nodes_and_all_kinds_of_faces() {
     let source = MeshSource { file: Some("cube.DAE".into()), ..Default::default() };
     let mesh = load_mesh(&source, folder.path(), "shape").unwrap();
     assert_eq!((mesh.vertices().len(), mesh.facets().len()), (8, 12));
-    // Doubled to 2 cm, mirrored in x, turned by 90° about z, moved by 10 cm: x in 8..=10 cm, y in -2..=0, z in 0..=2.
+    // Doubled to 2 cm, mirrored in x, turned by 90° about z, moved by 10 cm: x in 8..=10 cm, y in -2..=0, z
+    // in 0..=2.
     let low = mesh.vertices().iter().copied().reduce(|a, b| a.inf(&b)).unwrap();
     let high = mesh.vertices().iter().copied().reduce(|a, b| a.sup(&b)).unwrap();
     assert!((low - Vec3::new(0.08, -0.02, 0.0)).norm() < 1e-12, "{low}");

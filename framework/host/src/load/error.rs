@@ -46,7 +46,8 @@ pub enum LoadError {
     },
     /// The library exports no plugins.
     #[error(
-        "`{}` is a library without Regrasp plugins; the crate of a plugin library is of type `cdylib` and says \
+        "`{}` is a library without Regrasp plugins; the crate of a plugin library is of type `cdylib` and \
+            says \
          `regrasp_abi::export_plugins!(my_plugin::ENTRY);` (`regrasp new-plugin` writes one)",
         .path.display()
     )]
@@ -72,7 +73,8 @@ pub enum LoadError {
     },
     /// The library was built by another compiler, for another target, or from other sources of the contract.
     #[error(
-        "`{}` was not built alike with this program; what differs:\n{}\nrebuild the plugin (and this program, if the framework's sources \
+        "`{}` was not built alike with this program; what differs:\n{}\nrebuild the plugin (and this \
+            program, if the framework's sources \
          changed since it was built):\n  {rebuild}",
         .path.display(),
         lines(.differences)
@@ -105,7 +107,8 @@ pub enum LoadError {
         /// The system's word.
         cause: String,
     },
-    /// What was loaded is not what was read before: the file was replaced in between. Its plugins are not used.
+    /// What was loaded is not what was read before: the file was replaced in between. Its plugins are not
+    /// used.
     #[error("`{}` changed while it was being loaded; try again", .path.display())]
     Changed {
         /// The file.

@@ -1,4 +1,5 @@
-//! Loading a library that was inspected. The only code of the framework that is `unsafe`, besides the export macro's expansion.
+//! Loading a library that was inspected. The only code of the framework that is `unsafe`, besides the export
+//! macro's expansion.
 #![allow(unsafe_code)]
 
 use super::{Inspected, LoadError};
@@ -15,12 +16,14 @@ pub(crate) fn open(inspected: &Inspected) -> Result<Vec<&'static Entry>, LoadErr
         let cause = cause(&error).replace(&*image.path().to_string_lossy(), &path.to_string_lossy());
         LoadError::Open { path: path.clone(), cause }
     };
-    // SAFETY: loading runs the library's initialisers. The file carries the section that the export macro writes, so it is a Rust library
-    // that the user named to be loaded; what its author put into initialisers is the author's responsibility.
+    // SAFETY: loading runs the library's initialisers. The file carries the section that the export macro
+    // writes, so it is a Rust library that the user named to be loaded; what its author put into initialisers
+    // is the author's responsibility.
     let library = unsafe { libloading::Library::new(image.path()) }.map_err(failed)?;
     // Never unloaded: entries, objects and errors point into it.
     let library: &'static libloading::Library = Box::leak(Box::new(library));
-    // SAFETY: the export macro defines this name with this type, and the types are laid out alike, since the fingerprints are equal.
+    // SAFETY: the export macro defines this name with this type, and the types are laid out alike, since the
+    // fingerprints are equal.
     let export = unsafe { library.get::<ExportFunction>(EXPORT_NAME.as_bytes()) }.map_err(failed)?;
     // SAFETY: as above; the function stores a pointer and returns another.
     let exported = unsafe { export(&own_faults()) };
@@ -30,8 +33,8 @@ pub(crate) fn open(inspected: &Inspected) -> Result<Vec<&'static Entry>, LoadErr
     Ok(exported.entries.iter().collect())
 }
 
-/// What is handed to the system's loader: the bytes that were inspected, in memory, so that a file which is swapped or
-/// changed in between is not run. Where the system has no files in memory it is the file itself.
+/// What is handed to the system's loader: the bytes that were inspected, in memory, so that a file which is
+/// swapped or changed in between is not run. Where the system has no files in memory it is the file itself.
 struct Image {
     path: PathBuf,
     #[cfg(target_os = "linux")]

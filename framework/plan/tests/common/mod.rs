@@ -89,7 +89,7 @@ pub fn walk(seed: u64, fingers: usize, states: usize) -> Motion {
     let mut last = state(&mut random, fingers);
     let mut motion = Motion::default();
     for kind in [SegmentKind::Transfer, SegmentKind::Regrasp(FingerIndex(1)), SegmentKind::Transfer] {
-        let mut segment = Segment { kind, states: vec![last.clone()], times: vec![] };
+        let mut segment = Segment::new(kind, vec![last.clone()]);
         let mut velocity = [0.0; 24];
         for _ in 1..states {
             let mut next = last.clone();

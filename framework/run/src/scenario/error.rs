@@ -1,4 +1,5 @@
-//! Why a scenario is refused: always with the file and, where there is one, the key, the line and the likely fix.
+//! Why a scenario is refused: always with the file and, where there is one, the key, the line and the likely
+//! fix.
 
 use regrasp_api::{Fault, Refusal, Refuse, did_you_mean};
 use regrasp_host::HostError;

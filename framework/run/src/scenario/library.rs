@@ -1,5 +1,7 @@
 //! The scenarios and hands that are built into the program, so that it works from any folder.
 
+use super::{Place, ScenarioError, ScenarioFile};
+
 /// A built-in file.
 #[derive(Clone, Copy, Debug)]
 pub struct BuiltIn {
@@ -11,7 +13,7 @@ pub struct BuiltIn {
 
 macro_rules! built_in {
     ($folder:literal: $($name:literal),+ $(,)?) => {
-        &[$(BuiltIn { name: $name, text: include_str!(concat!("../../../../scenarios/", $folder, $name, ".toml")) }),+]
+        &[$(BuiltIn { name: $name, text: include_str!(concat!("../../scenarios/", $folder, $name, ".toml")) }),+]
     };
 }
 
@@ -32,4 +34,15 @@ pub const HANDS: &[BuiltIn] = built_in!(
 /// The built-in file with this name.
 pub fn find(files: &'static [BuiltIn], name: &str) -> Option<&'static BuiltIn> {
     files.iter().find(|file| file.name == name)
+}
+
+impl BuiltIn {
+    /// The scenario as its file has it: nothing is looked up, built or checked beyond its form.
+    pub fn read(&self) -> Result<ScenarioFile, ScenarioError> {
+        toml::from_str(self.text).map_err(|error| ScenarioError::Syntax {
+            place: Place::file(self.name),
+            language: "TOML",
+            message: error.message().to_owned(),
+        })
+    }
 }

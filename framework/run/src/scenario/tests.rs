@@ -218,7 +218,8 @@ fn goals_that_coincide_are_refused() {
         &refusal("angle_deg = 180.0", "angle_deg = 0.0"),
         &["`goal[0]` coincides with the start", "four quarters", "key `goal[0].pose`"],
     );
-    let again = "[[goal]]\npose = { position = [0.0, 0.0, 0.085], axis = [0.0, 0.0, -1.0], angle_deg = 180.0 }\n\n[[goal]]";
+    let again = "[[goal]]\npose = { position = [0.0, 0.0, 0.085], axis = [0.0, 0.0, -1.0], angle_deg = \
+        180.0 }\n\n[[goal]]";
     assert_says(&refusal("[[goal]]", again), &["`goal[1]` coincides with `goal[0]`"]);
     assert_says(&refusal("angle_deg = 180.0", "angle_deg = 360.0"), &["coincides with the start"]);
     let text = find(SCENARIOS, "sphere").unwrap().text;

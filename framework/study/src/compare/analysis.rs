@@ -1,4 +1,5 @@
-//! What the runs of a study say: figures of each variant on each scenario, and its comparison with the baseline.
+//! What the runs of a study say: figures of each variant on each scenario, and its comparison with the
+//! baseline.
 
 use super::statistics::{Estimate, Paired, holm, median_interval, wilson};
 use super::{RunRecord, RunStatus, Study, StudyScenario, Variant};
@@ -128,8 +129,8 @@ impl<'a> Cell<'a> {
         self.medians[figure as usize]
     }
 
-    /// The median planning time over *all* runs (s), one that did not succeed counting as endless; infinite where half of them failed. What
-    /// variants are ranked by: who fails is not fast.
+    /// The median planning time over *all* runs (s), one that did not succeed counting as endless; infinite
+    /// where half of them failed. What variants are ranked by: who fails is not fast.
     pub fn median_of_all_s(&self) -> f64 {
         let time = |run: &&RunRecord| if run.is_success() { run.times.planning_s } else { f64::INFINITY };
         let mut times: Vec<f64> = self.runs.iter().map(time).collect();
@@ -138,7 +139,8 @@ impl<'a> Cell<'a> {
         0.5 * (times[last / 2] + times[last.div_ceil(2)])
     }
 
-    /// Compares with another variant's runs of the same scenario, seed by seed; seeds that only one of them has are left out.
+    /// Compares with another variant's runs of the same scenario, seed by seed; seeds that only one of them
+    /// has are left out.
     pub fn against(&self, baseline: &Self) -> Paired {
         let time = |run: &RunRecord| run.is_success().then_some(run.times.planning_s);
         let theirs: BTreeMap<u64, Option<f64>> =
@@ -148,7 +150,8 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// All cells of a study, scenario by scenario, the baseline first; without those that were left out or have no run yet.
+/// All cells of a study, scenario by scenario, the baseline first; without those that were left out or have
+/// no run yet.
 pub fn analyse<'a>(study: &'a Study, records: &'a [RunRecord]) -> Vec<Vec<Cell<'a>>> {
     let mut runs: BTreeMap<(usize, usize), Vec<&RunRecord>> = BTreeMap::new();
     for record in records {

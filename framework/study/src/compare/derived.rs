@@ -3,8 +3,8 @@
 use super::{RunRecord, Study, analyse, ompl, plan_path, report, summary};
 use std::path::{Path, PathBuf};
 
-/// Every file that is made from the runs, with its path in the study's folder: `summary.csv`, `summary.md`, `report.html`, and for each
-/// scenario a log for OMPL's tools. Equal runs give equal files.
+/// Every file that is made from the runs, with its path in the study's folder: `summary.csv`, `summary.md`,
+/// `report.html`, and for each scenario a log for OMPL's tools. Equal runs give equal files.
 ///
 /// The report's pictures come from the plans that the folder keeps; it does without those that are not there.
 pub fn derived_files(folder: &Path, study: &Study, records: &[RunRecord]) -> Vec<(PathBuf, String)> {

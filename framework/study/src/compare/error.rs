@@ -11,7 +11,8 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum StudyError {
     /// A variant's plugins cannot be had for a scenario.
-    #[error("variant `{variant}`, scenario `{scenario}`: {error}{}", if *.unsupported { "\n  `--skip-unsupported` leaves such pairs out" } else { "" })]
+    #[error("variant `{variant}`, scenario `{scenario}`: \
+        {error}{}", if *.unsupported { "\n  `--skip-unsupported` leaves such pairs out" } else { "" })]
     Refused {
         /// The scenario's name.
         scenario: String,

@@ -1,4 +1,5 @@
-//! The journal: an append-only file with one line for each finished run, which a kill at any moment cannot spoil.
+//! The journal: an append-only file with one line for each finished run, which a kill at any moment cannot
+//! spoil.
 
 use super::{RunRecord, StudyError};
 use std::fs::{File, OpenOptions, TryLockError};
@@ -15,9 +16,11 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// Opens the journal of a folder, or begins one, and gives the runs that it holds in the order in which they ended.
+    /// Opens the journal of a folder, or begins one, and gives the runs that it holds in the order in which
+    /// they ended.
     ///
-    /// A last line that is torn, as a kill in the middle of writing leaves it, is cut off: its run is made again.
+    /// A last line that is torn, as a kill in the middle of writing leaves it, is cut off: its run is made
+    /// again.
     pub fn open(folder: &Path) -> Result<(Self, Vec<RunRecord>), StudyError> {
         let path = folder.join(JOURNAL);
         let failed = |source| StudyError::Io { path: path.clone(), source };
@@ -26,7 +29,8 @@ impl Journal {
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(StudyError::Busy { folder: folder.to_owned() }),
-            // Some network file systems know no locks: then it is up to the user that nobody else works there.
+            // Some network file systems know no locks: then it is up to the user that nobody else works
+            // there.
             Err(TryLockError::Error(_)) => {}
         }
         let mut bytes = Vec::new();

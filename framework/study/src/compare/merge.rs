@@ -15,7 +15,8 @@ struct Part {
     records: Vec<RunRecord>,
 }
 
-/// Joins the parts in `folders` into `output`: the same files, times aside, as a study that was never in parts. Gives the study.
+/// Joins the parts in `folders` into `output`: the same files, times aside, as a study that was never in
+/// parts. Gives the study.
 ///
 /// Refuses parts of different studies, parts that are missing, there twice, or not finished.
 pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Study, StudyError> {

@@ -16,16 +16,19 @@ pub struct PaperRow<'a> {
 
 /// The table as lines of text, a row a scenario.
 ///
-/// The paper: A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007, Table 1: averages
-/// on an Athlon64 3500+. It gives no dimensions, so that the problems are alike, not the same. Ours are over all runs, solved or not: how many
-/// were solved and how many verified, quantiles of the planning time on one thread (ms), medians of nodes and regrasps.
+/// The paper: A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation
+/// planning", SSD 2007, Table 1: averages on an Athlon64 3500+. It gives no dimensions, so that the problems
+/// are alike, not the same. Ours are over all runs, solved or not: how many were solved and how many
+/// verified, quantiles of the planning time on one thread (ms), medians of nodes and regrasps.
 pub fn paper_table(rows: &[PaperRow<'_>]) -> String {
     let wide = rows.iter().map(|row| row.scenario.chars().count()).max().unwrap_or(0).max(15);
     let seeds = rows.iter().map(|row| row.runs.len()).max().unwrap_or(0);
     let space = "";
     let mut text = format!(
-        "{space:<wide$} the paper (averages)  | ours over {seeds} seeds: one thread, medians, planning alone in ms\n\
-         {space:<wide$}   time genrtd  graph  | solved verified   median      90%  slowest generated graph regrasps\n"
+        "{space:<wide$} the paper (averages)  | ours over {seeds} seeds: one thread, medians, planning \
+            alone in ms\n\
+         {space:<wide$}   time genrtd  graph  | solved verified   median      90%  slowest generated graph \
+         regrasps\n"
     );
     for row in rows {
         text += &format!("{:<wide$} {}  | {}\n", row.scenario, published(row.paper), ours(&row.runs));

@@ -114,7 +114,7 @@ pub struct Certified {
     pub margin: Option<f64>,
     /// Smallest distance of two bodies that may not touch (m).
     pub clearance_m: Option<f64>,
-    /// Largest net slip of a contact over one transfer (m).
+    /// Largest net slip of a contact from its finger's touch-down to its lift (m).
     pub slip_m: Option<f64>,
     /// Largest distance between a holding fingertip and the surface (m).
     pub closure_m: Option<f64>,

@@ -29,7 +29,8 @@ pub fn write_runs(folder: &Path, study: &Study, records: &[RunRecord]) -> Result
 }
 
 impl Folder {
-    /// Writes the results of the runs that are there. Of a study that is not complete that is the table of runs alone.
+    /// Writes the results of the runs that are there. Of a study that is not complete that is the table of
+    /// runs alone.
     pub fn finish(&self, study: &Study) -> Result<(), StudyError> {
         let records = self.records();
         if records.len() < study.keys().len() {

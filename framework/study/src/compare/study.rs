@@ -28,9 +28,11 @@ pub struct Study {
     pub format: StudyFormat,
     /// [`STUDY_VERSION`].
     pub version: u32,
-    /// The command that makes this study, word by word, but for what does not change its results: folder, threads, shard.
+    /// The command that makes this study, word by word, but for what does not change its results: folder,
+    /// threads, shard.
     pub command: Vec<String>,
-    /// Versions of what computes, by name: `regrasp`, `program` (a hash of the executable), `library NAME` (a hash of a loaded library).
+    /// Versions of what computes, by name: `regrasp`, `program` (a hash of the executable), `library NAME` (a
+    /// hash of a loaded library).
     pub versions: BTreeMap<String, String>,
     /// The machines that took part, in the order in which they came; usually one.
     pub machines: Vec<Machine>,
@@ -76,8 +78,8 @@ pub struct StudyScenario {
 pub struct Variant {
     /// Its name, unique in the study, such as `force-closure + rlg`.
     pub name: String,
-    /// In each slot that is varied and that this variant fills by itself: what it fills it with, in a word or a few, such as `socp` or
-    /// `interleaved end=0.8`.
+    /// In each slot that is varied and that this variant fills by itself: what it fills it with, in a word or
+    /// a few, such as `socp` or `interleaved end=0.8`.
     pub levels: BTreeMap<Slot, String>,
 }
 
@@ -110,8 +112,8 @@ impl Seeds {
     }
 }
 
-/// One of several parts of a study: all variants of every `of`-th pair of scenario and seed, so that runs that are compared with each other
-/// were made on the same machine.
+/// One of several parts of a study: all variants of every `of`-th pair of scenario and seed, so that runs
+/// that are compared with each other were made on the same machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shard {
@@ -139,7 +141,8 @@ pub struct Machine {
     pub threads: usize,
 }
 
-/// What identifies a run within its study: indices of scenario and variant, and the seed. In the order of `runs.csv`.
+/// What identifies a run within its study: indices of scenario and variant, and the seed. In the order of
+/// `runs.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RunKey {
     /// Index into [`Study::scenarios`].
@@ -179,7 +182,8 @@ impl Study {
         self.left_out.iter().any(|pair| pair.scenario == *scenario && pair.variant == *variant)
     }
 
-    /// The runs of the study, or of its shard, in the order of `runs.csv`: by scenario, then variant, then seed.
+    /// The runs of the study, or of its shard, in the order of `runs.csv`: by scenario, then variant, then
+    /// seed.
     pub fn keys(&self) -> Vec<RunKey> {
         let pairs = (0..self.scenarios.len()).flat_map(|s| (0..self.variants.len()).map(move |v| (s, v)));
         let seeds =
@@ -196,7 +200,8 @@ impl Study {
             && !self.is_left_out(key.scenario, key.variant)
     }
 
-    /// The name of a scenario as the stem of a file's name: letters, digits, `-`, `_`, `.` alone, and for each scenario another.
+    /// The name of a scenario as the stem of a file's name: letters, digits, `-`, `_`, `.` alone, and for
+    /// each scenario another.
     pub fn file_stem(&self, scenario: usize) -> String {
         let stem = |scenario: &StudyScenario| -> String {
             let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' };
@@ -218,9 +223,11 @@ impl Study {
         }
     }
 
-    /// What tells this study from another one, in words; `None` where both are the same: the same results but for times.
+    /// What tells this study from another one, in words; `None` where both are the same: the same results but
+    /// for times.
     ///
-    /// The command counts for nothing, as there is more than one way to say the same, nor do machines and the time of the beginning.
+    /// The command counts for nothing, as there is more than one way to say the same, nor do machines and the
+    /// time of the beginning.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let names = |study: &Self| {
             json!({

@@ -1,12 +1,14 @@
 //! Internal forces: a proof of force closure that arithmetic can check, whoever found the force.
 //!
-//! A grasp is force closure exactly if its grasp map G has rank 6 and some contact forces y with G y = 0 lie strictly inside every cone.
-//! (J. Kerr and B. Roth, "Analysis of multifingered hands", IJRR 1986; NUMERICS of this project, section 1.)
+//! A grasp is force closure exactly if its grasp map G has rank 6 and some contact forces y with G y = 0 lie
+//! strictly inside every cone. (J. Kerr and B. Roth, "Analysis of multifingered hands", IJRR 1986; NUMERICS
+//! of this project, section 1.)
 
 use nalgebra::{Cholesky, Matrix6, SMatrix, Vector6};
 use regrasp_api::{MAX_FINGERS, Vec3, cross_matrix};
 
-/// The least slack of a proof, for forces whose normal parts sum to 1: below, solvers and rounding decide, not the grasp.
+/// The least slack of a proof, for forces whose normal parts sum to 1: below, solvers and rounding decide,
+/// not the grasp.
 pub(crate) const LEAST_SLACK: f64 = 1e-8;
 /// The least singular value of the scaled grasp map that counts as rank 6.
 const LEAST_SINGULAR: f64 = 1e-6;
@@ -32,7 +34,8 @@ impl Contact {
         stack(&force, &torque)
     }
 
-    /// Adds weight times the outer products of this contact's columns: normal with weight `w`, tangential and torsional with weight `u`.
+    /// Adds weight times the outer products of this contact's columns: normal with weight `w`, tangential and
+    /// torsional with weight `u`.
     fn accumulate(&self, sum: &mut Matrix6<f64>, w: f64, u: f64) {
         let normal = stack(&self.n, &self.r.cross(&self.n));
         let mu_squared = u * self.mu * self.mu;
@@ -51,7 +54,8 @@ fn stack(force: &Vec3, torque: &Vec3) -> Vector6<f64> {
     Vector6::new(force.x, force.y, force.z, torque.x, torque.y, torque.z)
 }
 
-/// The force of one contact in coordinates in which its cone is `normal ≥ |(tangential, spin)|`: tangential force divided by μ, torsion by γ.
+/// The force of one contact in coordinates in which its cone is `normal ≥ |(tangential, spin)|`: tangential
+/// force divided by μ, torsion by γ.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Force {
     pub(crate) normal: f64,
@@ -70,7 +74,8 @@ impl Force {
 /// The forces of all contacts of a grasp.
 pub(crate) type Forces = [Force; MAX_FINGERS];
 
-/// Checked forces: balanced and strictly inside every cone, with normal parts that sum to 1, at a grasp of rank 6.
+/// Checked forces: balanced and strictly inside every cone, with normal parts that sum to 1, at a grasp of
+/// rank 6.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proof {
     pub(crate) forces: Forces,
@@ -78,8 +83,8 @@ pub(crate) struct Proof {
     pub(crate) slack: f64,
 }
 
-/// Tries to prove the grasp force closure with `forces` found somewhere else, such as at a grasp close by: takes them to this grasp's
-/// normals, balances them by the smallest correction, and checks.
+/// Tries to prove the grasp force closure with `forces` found somewhere else, such as at a grasp close by:
+/// takes them to this grasp's normals, balances them by the smallest correction, and checks.
 pub(crate) fn prove(contacts: &[Contact], forces: &Forces) -> Option<Proof> {
     let correction = Correction::new(contacts)?;
     let forces = correction.towards(contacts, forces, &Vector6::zeros());
@@ -146,11 +151,13 @@ fn check(contacts: &[Contact], forces: &Forces, correction: &Correction) -> Opti
     inside.then_some(proof)
 }
 
-/// A certified lower bound of the closure margin Q1 = min over |w| = 1 of max_i h_i(w), from one internal force.
+/// A certified lower bound of the closure margin Q1 = min over |w| = 1 of max_i h_i(w), from one internal
+/// force.
 ///
-/// For every unit w, Σ y_i h_i(w) (y_i the normal forces, which sum to 1) is at least the sum over the contacts of slack times the length of w on the
-/// contact's tangential and torsional columns, since the force may move by its slack without leaving the cone's slice. Hence Q1² is at least
-/// the smallest eigenvalue of Σ slack² (those columns' outer products). The normal columns count too where the force moves by slack/√2 in
+/// For every unit w, Σ y_i h_i(w) (y_i the normal forces, which sum to 1) is at least the sum over the
+/// contacts of slack times the length of w on the contact's tangential and torsional columns, since the force
+/// may move by its slack without leaving the cone's slice. Hence Q1² is at least the smallest eigenvalue of Σ
+/// slack² (those columns' outer products). The normal columns count too where the force moves by slack/√2 in
 /// all directions, which takes up to that much more normal force. The larger of the two bounds holds.
 pub(crate) fn margin(contacts: &[Contact], proof: &Proof) -> f64 {
     let (mut tangential, mut all, mut more) = (Matrix6::zeros(), Matrix6::zeros(), 1.0);

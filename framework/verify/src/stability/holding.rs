@@ -7,7 +7,7 @@ use crate::contact_checks::Touch;
 use crate::hand::Chains;
 use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
-use nalgebra::{Vector6, vector};
+use nalgebra::Vector6;
 use regrasp_api::{HoldLoad, MAX_FINGERS, Vec3};
 use regrasp_plan::{Claims, ConeClaim, Place};
 
@@ -163,14 +163,14 @@ impl HoldingCheck {
     /// The wrenches that the contacts must give, over the unit.
     fn wanted(&self, weight_O: &Vec3) -> Vec<Vector6<f64>> {
         let f = -weight_O / self.unit;
-        let weight = vector![f.x, f.y, f.z, 0.0, 0.0, 0.0];
+        let weight = Vector6::new(f.x, f.y, f.z, 0.0, 0.0, 0.0);
         let force = self.load.disturbance_force / self.unit;
         let torque = self.load.disturbance_torque / (self.unit * self.length);
         let mut wanted = vec![weight];
         if force > 0.0 || torque > 0.0 {
             for v in icosahedron() {
-                wanted.push(weight + vector![v.x, v.y, v.z, 0.0, 0.0, 0.0] * force);
-                wanted.push(weight + vector![0.0, 0.0, 0.0, v.x, v.y, v.z] * torque);
+                wanted.push(weight + Vector6::new(v.x, v.y, v.z, 0.0, 0.0, 0.0) * force);
+                wanted.push(weight + Vector6::new(0.0, 0.0, 0.0, v.x, v.y, v.z) * torque);
             }
         }
         wanted

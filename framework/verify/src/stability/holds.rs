@@ -6,7 +6,7 @@ use super::load::icosahedron;
 use crate::hand::Chains;
 use crate::track::{Frames, Leg};
 use crate::verdict::{Check, Gauge};
-use nalgebra::{Vector6, vector};
+use nalgebra::Vector6;
 use regrasp_api::{HoldLoad, MAX_FINGERS, Vec3};
 use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, Holds, Place};
 
@@ -120,7 +120,7 @@ impl HoldsCheck {
 
     /// What is wrong with the forces of one state.
     fn fault(&self, held: &Held, forces: &Forces, weight_O: &Vec3) -> Option<&'static str> {
-        let mut residual = vector![weight_O.x, weight_O.y, weight_O.z, 0.0, 0.0, 0.0];
+        let mut residual = Vector6::new(weight_O.x, weight_O.y, weight_O.z, 0.0, 0.0, 0.0);
         let mut largest = residual.norm();
         for (contact, force) in held.contacts.iter().zip(forces) {
             let wrench = contact.wrench(force);
@@ -156,9 +156,9 @@ impl HoldsCheck {
             let zero = [Force::default(); MAX_FINGERS];
             self.reach(held, forces, &correction.towards(&held.contacts, &zero, &wanted))
         };
-        let weight = vector![weight_O.x, weight_O.y, weight_O.z, 0.0, 0.0, 0.0];
+        let weight = Vector6::new(weight_O.x, weight_O.y, weight_O.z, 0.0, 0.0, 0.0);
         figures.mass = if weight.norm() > 0.0 { self.mass * (1.0 + further(-weight)) } else { 0.0 };
-        let pushes = icosahedron().into_iter().map(|v| further(vector![v.x, v.y, v.z, 0.0, 0.0, 0.0]));
+        let pushes = icosahedron().into_iter().map(|v| further(Vector6::new(v.x, v.y, v.z, 0.0, 0.0, 0.0)));
         figures.disturbance = pushes.fold(f64::INFINITY, f64::min);
         figures
     }

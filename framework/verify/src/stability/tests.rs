@@ -36,7 +36,8 @@ fn random_grasp(random: &mut Random, count: usize, mu: f64, gamma: f64) -> Vec<C
     (0..count).map(|_| one(random)).collect()
 }
 
-/// An upper bound of Q1 = min over |w| = 1 of max_i h_i(w): the least over many directions, improved by random steps, from several starts.
+/// An upper bound of Q1 = min over |w| = 1 of max_i h_i(w): the least over many directions, improved by
+/// random steps, from several starts.
 fn sampled_margin(contacts: &[Contact], random: &mut Random) -> f64 {
     let value = |w: &(Vec3, Vec3)| {
         let support = |c: &Contact| {

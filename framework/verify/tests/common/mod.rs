@@ -41,7 +41,7 @@ pub fn pinned(hand: &ChainHand, q: &Configuration, X_HO: &Pose, steps: usize) ->
         }
         states.push(next);
     }
-    Segment { kind: SegmentKind::Transfer, states, times: vec![] }
+    Segment::new(SegmentKind::Transfer, states)
 }
 
 /// Fingers on the faces +x, +y, -x, -y, a little off the middle.
@@ -87,7 +87,7 @@ pub fn transfer(hand: &ChainHand, q: &Configuration, X_HO: &Pose, steps: usize) 
         }
         states.push(last.clone());
     }
-    Segment { kind: SegmentKind::Transfer, states, times: vec![] }
+    Segment::new(SegmentKind::Transfer, states)
 }
 
 /// One small step: the contact moves so that the two material points at it move alike.
@@ -127,7 +127,7 @@ pub fn regrasp(hand: &ChainHand, q: &Configuration, finger: FingerIndex, shift: 
     (1..=8).for_each(|k| put(&mut moving, 1.0, 0.001 * f64::from(8 - k)));
     let end = states.last_mut().unwrap();
     end.contacts[finger] = Some(Contact { p_OC: contact.p_OC + shift, ..contact });
-    Segment { kind: SegmentKind::Regrasp(finger), states, times: vec![] }
+    Segment::new(SegmentKind::Regrasp(finger), states)
 }
 
 /// The whole motion, timed.
@@ -142,6 +142,12 @@ pub fn by_hand(hand: &ChainHand, steps: usize) -> Motion {
     let mut motion = Motion { segments: vec![first, second, third] };
     assign_times(&mut motion, hand, &TimingLimits::default()).unwrap();
     motion
+}
+
+/// Records the facets of the plan's object, after a change of it.
+pub fn record_object(plan: &mut Plan) {
+    let object = regrasp_world::load_object(&plan.scenario.problem.object).unwrap();
+    plan.object = Some(ObjectRecord { surface: Some(Facets::from(&object.mesh)), contact_surface: None });
 }
 
 /// A plan that holds everything it must.
@@ -170,7 +176,7 @@ pub fn plan_of(mut problem: Problem, hand: &ChainHand, motion: &Motion) -> Plan 
             plugins: BTreeMap::from([(Slot::ContactModel, choice)]),
         },
         seed: 0,
-        object: None,
+        object: Some(ObjectRecord { surface: Some(Facets::from(&object.mesh)), contact_surface: None }),
         notes: BTreeMap::new(),
         versions: BTreeMap::new(),
         claims: Claims {

@@ -1,4 +1,5 @@
-//! What is drawn over a picture: traces, outlines, marks and words. They lie on top of hand and object; what the object hides is dotted.
+//! What is drawn over a picture: traces, outlines, marks and words. They lie on top of hand and object; what
+//! the object hides is dotted.
 
 use super::Picture;
 use super::view::{Point, faces_the_eye, hull, see};
@@ -8,8 +9,8 @@ use regrasp_api::Vec3;
 const MARK: f64 = 1.3;
 
 impl Picture {
-    /// A line through points of the hand's frame (m), each with the outward normal of the surface that it lies on; where that normal looks
-    /// away from the eye the line is dotted.
+    /// A line through points of the hand's frame (m), each with the outward normal of the surface that it
+    /// lies on; where that normal looks away from the eye the line is dotted.
     pub fn trace(&mut self, class: &str, points: &[(Vec3, Vec3)]) {
         let seen: Vec<(Point, bool)> = points.iter().map(|(p, n)| (see(p), faces_the_eye(n))).collect();
         let mut from = 0;

@@ -16,7 +16,8 @@ fn moved(X: &Pose, p: &Vec3) -> Vec3 {
 }
 
 impl Picture {
-    /// The facets that face the eye, shaded; those about two of the object's own planes are painted as a cross.
+    /// The facets that face the eye, shaded; those about two of the object's own planes are painted as a
+    /// cross.
     pub(super) fn draw_object(&mut self, mesh: &Mesh, X_HO: &Pose) {
         let seen: Vec<Point> = mesh.vertices().iter().map(|p| see(&moved(X_HO, p))).collect();
         let depth = see(&X_HO.translation.vector).depth;
@@ -28,7 +29,8 @@ impl Picture {
                 facets.push((class(mesh, k as u32, X_HO), middle, points));
             }
         }
-        // Facets of a convex object do not hide each other, so that those of one colour can share an element; others are drawn by depth.
+        // Facets of a convex object do not hide each other, so that those of one colour can share an element;
+        // others are drawn by depth.
         match mesh.is_locally_convex() {
             true => facets.sort_by(|a, b| a.0.cmp(&b.0)),
             false => facets.sort_by(|a, b| a.1.total_cmp(&b.1)),
@@ -129,7 +131,8 @@ fn class(mesh: &Mesh, facet: u32, X_HO: &Pose) -> String {
     format!("rg-{}{shade}", if painted { "paint" } else { "object" })
 }
 
-/// A triangle as part of a path, to a tenth of a millimetre: the first corner, and the way on from there, which takes fewer characters.
+/// A triangle as part of a path, to a tenth of a millimetre: the first corner, and the way on from there,
+/// which takes fewer characters.
 fn triangle(points: &[Point; 3]) -> String {
     let tenths = |point: &Point| [point.x, point.y].map(|x| (10.0 * x).round() as i64);
     let [a, b, c] = points.each_ref().map(tenths);

@@ -1,7 +1,8 @@
 //! Pictures of a hand with its object, as SVG: seen from the front, 35° from above, without perspective.
 //!
-//! A finger that holds the object has a dark tip, a lifted one a red tip. The cross painted on the object shows how it turns. Colours are classes,
-//! so that a page can have its own: [`STYLE`] is what they are by default.
+//! A finger that holds the object has a dark tip, a lifted one a red tip. The cross painted on the object
+//! shows how it turns. Colours are classes, so that a page can have its own: [`STYLE`] is what they are by
+//! default.
 
 mod annotate;
 mod body;

@@ -10,7 +10,8 @@ const LETTERS: f64 = 0.018;
 /// ... and at least this (mm).
 const SMALLEST_LETTERS: f64 = 9.0;
 
-/// Pictures with their captions as one SVG file, `columns` in a row; `&`, `<` and `>` in captions are escaped. All are drawn to one scale.
+/// Pictures with their captions as one SVG file, `columns` in a row; `&`, `<` and `>` in captions are
+/// escaped. All are drawn to one scale.
 pub fn sheet(frames: &[(Picture, String)], columns: usize) -> String {
     let columns = columns.clamp(1, frames.len().max(1));
     let bounds = frames.iter().fold(Bounds::NOTHING, |all, (picture, _)| all.union(picture.bounds()));
@@ -21,7 +22,9 @@ pub fn sheet(frames: &[(Picture, String)], columns: usize) -> String {
     let rows = frames.len().div_ceil(columns);
     let (all_width, all_height) = (columns as f64 * width, rows as f64 * height);
     let mut text = format!(
-        "<svg font-family=\"sans-serif\" font-size=\"{letters:.1}\" text-anchor=\"middle\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {all_width:.0} {all_height:.0}\">\n<style>{STYLE}</style>\n\
+        "<svg font-family=\"sans-serif\" font-size=\"{letters:.1}\" text-anchor=\"middle\" \
+            xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {all_width:.0} \
+            {all_height:.0}\">\n<style>{STYLE}</style>\n\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     );
     for (k, (picture, caption)) in frames.iter().enumerate() {
@@ -32,7 +35,8 @@ pub fn sheet(frames: &[(Picture, String)], columns: usize) -> String {
         let elements = picture.elements();
         write!(
             text,
-            "<g transform=\"translate({x:.1} {y:.1})\">\n{elements}</g>\n<text x=\"{middle:.1}\" y=\"{line:.1}\">{caption}</text>\n"
+            "<g transform=\"translate({x:.1} {y:.1})\">\n{elements}</g>\n<text x=\"{middle:.1}\" \
+                y=\"{line:.1}\">{caption}</text>\n"
         )
         .expect("a text takes everything");
     }

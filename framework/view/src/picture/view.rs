@@ -60,12 +60,14 @@ impl Bounds {
     }
 }
 
-/// Twice the signed area of a triangle on the paper: positive where it is seen counter-clockwise (y being downwards, a facet seen from outside).
+/// Twice the signed area of a triangle on the paper: positive where it is seen counter-clockwise (y being
+/// downwards, a facet seen from outside).
 pub fn area(a: &Point, b: &Point, c: &Point) -> f64 {
     (b.y - a.y) * (c.x - a.x) - (b.x - a.x) * (c.y - a.y)
 }
 
-/// The convex hull of points as they are seen (A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", IPL 1979).
+/// The convex hull of points as they are seen (A. M. Andrew, "Another efficient algorithm for convex hulls in
+/// two dimensions", IPL 1979).
 pub fn hull(mut points: Vec<Point>) -> Vec<Point> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let mut around = Vec::new();

@@ -1,5 +1,5 @@
-//! A link that is a box, or held by one, against the object: bounds that decide nearly always, where the exact distance of box and mesh costs
-//! some 50 µs.
+//! A link that is a box, or held by one, against the object: bounds that decide nearly always, where the
+//! exact distance of box and mesh costs some 50 µs.
 
 use super::body::Placed;
 use super::convex::Verdict;
@@ -11,8 +11,9 @@ use regrasp_api::{Pose, Vec3};
 
 /// Whether a solid at `X_HS` is farther from the object at `X_HO` than `clear` (m).
 ///
-/// Free where a plane lies between the two: square to the line from the object's middle to the nearest point of the box, or parallel to a side of the box
-/// or of the object's frame. Close where the nearest point itself is.
+/// Free where a plane lies between the two: square to the line from the object's middle to the nearest point
+/// of the box, or parallel to a side of the box or of the object's frame. Close where the nearest point
+/// itself is.
 pub(super) fn verdict(
     placed: &Placed,
     X_HS: &Pose,

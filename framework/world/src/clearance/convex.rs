@@ -14,7 +14,8 @@ pub(crate) enum Verdict {
     Unknown,
 }
 
-/// A convex solid K about the origin of its frame, and how much of it is certainly body: `inner`·K ⊂ body ⊂ K.
+/// A convex solid K about the origin of its frame, and how much of it is certainly body: `inner`·K ⊂ body ⊂
+/// K.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Convex {
     form: Primitive,
@@ -37,8 +38,8 @@ impl Convex {
         Self { form: Primitive::Cuboid { half_size }, inner: 1.0 }
     }
 
-    /// The primitive around a polytope given by its facets' planes n·x = d (m); `None` for a torus, which is not convex, and
-    /// where the planes do not hold the origin.
+    /// The primitive around a polytope given by its facets' planes n·x = d (m); `None` for a torus, which is
+    /// not convex, and where the planes do not hold the origin.
     pub fn around(form: Primitive, planes: impl Iterator<Item = (Vec3, f64)>) -> Option<Self> {
         if matches!(form, Primitive::Torus { .. }) {
             return None;
@@ -64,10 +65,10 @@ impl Convex {
 
     /// Whether the rod, given in K's frame, keeps the body at more than `clear` (m).
     ///
-    /// The distance g(t) of the points along the axis from K is convex: each supporting plane gives a tangent below it, and
-    /// the next point is where the lowest two tangents meet (J. E. Kelley, "The cutting-plane method for solving convex
-    /// programs", SIAM J. 1960). Free as soon as the tangents stay above radius + clearance; close as soon as one point
-    /// is that near the inner body.
+    /// The distance g(t) of the points along the axis from K is convex: each supporting plane gives a tangent
+    /// below it, and the next point is where the lowest two tangents meet (J. E. Kelley, "The cutting-plane
+    /// method for solving convex programs", SIAM J. 1960). Free as soon as the tangents stay above radius +
+    /// clearance; close as soon as one point is that near the inner body.
     #[inline]
     pub fn verdict(&self, rod: &Rod, clear: f64) -> Verdict {
         let apart = rod.radius + clear;
@@ -145,9 +146,9 @@ fn towards(p: &Vec3, core: Vec3, radius: f64) -> Option<Support> {
 
 /// A supporting plane of the ellipsoid whose normal is nearly that of the closest point.
 ///
-/// The closest point solves Σ (aᵢ pᵢ / (aᵢ² + τ))² = 1 (D. Eberly, "Distance from a point to an ellipse, an ellipsoid, or a
-/// hyperellipsoid", 2013); two Newton steps from a start that is exact on the axes are plenty, since every normal gives a
-/// valid plane and the error is of second order in the normal's.
+/// The closest point solves Σ (aᵢ pᵢ / (aᵢ² + τ))² = 1 (D. Eberly, "Distance from a point to an ellipse, an
+/// ellipsoid, or a hyperellipsoid", 2013); two Newton steps from a start that is exact on the axes are
+/// plenty, since every normal gives a valid plane and the error is of second order in the normal's.
 #[inline]
 fn ellipsoid_support(p: &Vec3, semi_axes: &Vec3) -> Option<Support> {
     let squares = semi_axes.component_mul(semi_axes);
@@ -191,8 +192,8 @@ impl Tangent {
     }
 }
 
-/// Where to cut next, and the tangents' value there, which is the least on the bracket; `None` at an end of the rod, where
-/// g itself is least.
+/// Where to cut next, and the tangents' value there, which is the least on the bracket; `None` at an end of
+/// the rod, where g itself is least.
 #[inline]
 fn next_cut(low: &Option<Tangent>, high: &Option<Tangent>) -> Option<(f64, f64)> {
     match (low, high) {

@@ -27,7 +27,8 @@ pub(crate) enum Solid {
 pub(crate) struct MeshSolid {
     surface: TriMesh,
     vertices: Vec<Vec3>,
-    /// One vertex of each connected component: the surfaces being apart, it tells whether the component is inside another body.
+    /// One vertex of each connected component: the surfaces being apart, it tells whether the component is
+    /// inside another body.
     roots: Vec<Vec3>,
     pub bounds: Bounds,
 }
@@ -41,7 +42,8 @@ impl MeshSolid {
         Self { surface, vertices: mesh.vertices().to_vec(), roots: roots(mesh), bounds }
     }
 
-    /// Signed distance of a point (m) that is known to be at most `limit` (m) from the surface, which makes it cheaper.
+    /// Signed distance of a point (m) that is known to be at most `limit` (m) from the surface, which makes
+    /// it cheaper.
     pub fn signed_distance_within(&self, p: &Vec3, limit: f64) -> f64 {
         let p = to_glam(p);
         let limit = limit * (1.0 + 1e-9);

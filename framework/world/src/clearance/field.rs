@@ -6,29 +6,32 @@ use super::rod::{Bounds, Rod};
 use regrasp_api::Vec3;
 use std::sync::Arc;
 
-/// Cells along the longest side of the grid: at most 14,000 exact distances. A finer grid saves little in the search, where
-/// the exact distance decides beside it, and costs its third power here.
+/// Cells along the longest side of the grid: at most 14,000 exact distances. A finer grid saves little in the
+/// search, where the exact distance decides beside it, and costs its third power here.
 const CELLS: f64 = 24.0;
 
 /// A closed mesh with signed distances at the centres of a grid's cells.
 ///
-/// The signed distance changes by at most the way travelled, so the value at a cell's centre bounds it from both sides
-/// everywhere in the cell, whatever the mesh: nothing is interpolated, and nothing can be overestimated.
+/// The signed distance changes by at most the way travelled, so the value at a cell's centre bounds it from
+/// both sides everywhere in the cell, whatever the mesh: nothing is interpolated, and nothing can be
+/// overestimated.
 pub(crate) struct Field {
     solid: Arc<MeshSolid>,
     grid: Bounds,
     cell: f64,
     counts: [usize; 3],
-    /// Signed distances at the cells' centres (m), x running fastest; more than a cell deep inside, upper bounds of them.
+    /// Signed distances at the cells' centres (m), x running fastest; more than a cell deep inside, upper
+    /// bounds of them.
     values: Vec<f64>,
 }
 
-/// Along a rod, no step is shorter than this (m): a rod that does touch is found out quickly, and one that does not, but comes
-/// that near to being too close, is left to the exact distance.
+/// Along a rod, no step is shorter than this (m): a rod that does touch is found out quickly, and one that
+/// does not, but comes that near to being too close, is left to the exact distance.
 const SHORTEST_STEP: f64 = 50e-6;
 
 impl Field {
-    /// A field about `solid` that reaches `wide` (m) beyond it: the largest radius of a rod, and the clearance.
+    /// A field about `solid` that reaches `wide` (m) beyond it: the largest radius of a rod, and the
+    /// clearance.
     pub fn new(solid: Arc<MeshSolid>, wide: f64) -> Self {
         let wide = Vec3::repeat(wide);
         let grid = Bounds { lower: solid.bounds.lower - wide, upper: solid.bounds.upper + wide };
@@ -71,8 +74,9 @@ impl Field {
 
     /// Whether the rod, given in the mesh's frame, keeps the solid at more than `clear` (m).
     ///
-    /// Walks along the axis from the middle to both ends, each time as far as the distance there allows (J. C. Hart, "Sphere
-    /// tracing", The Visual Computer 1996); where the grid cannot tell, the exact distance of the point does.
+    /// Walks along the axis from the middle to both ends, each time as far as the distance there allows (J.
+    /// C. Hart, "Sphere tracing", The Visual Computer 1996); where the grid cannot tell, the exact distance
+    /// of the point does.
     pub fn verdict(&self, rod: &Rod, clear: f64) -> Verdict {
         let middle = rod.middle();
         let half = (rod.b - rod.a).norm() / 2.0;

@@ -68,7 +68,8 @@ impl Fixed {
         exact::distance(&self.placed.solid, &self.placed.X_BS, solid, X_HS)
     }
 
-    /// Whether the object is farther than `clear` (m); exact. `frame` is `X_HO` with its rotation as a matrix.
+    /// Whether the object is farther than `clear` (m); exact. `frame` is `X_HO` with its rotation as a
+    /// matrix.
     pub fn clear_of_object(&self, object: &ObjectBody, X_HO: &Pose, frame: &LinkFrame, clear: f64) -> bool {
         let p_HMiddle = frame.point(&object.p_OMiddle);
         if self.bounds.distance(&p_HMiddle) > object.radius + clear {
@@ -97,7 +98,8 @@ impl Fixed {
         self.distance(&object.solid, X_HO) > clear
     }
 
-    /// Whether a plane parallel to a side of the box, or square to the line between the centres, keeps the object away.
+    /// Whether a plane parallel to a side of the box, or square to the line between the centres, keeps the
+    /// object away.
     fn a_side_separates(&self, half_size: &Vec3, object: &ObjectBody, frame: &LinkFrame, clear: f64) -> bool {
         let p_SO = self.X_HS.R_HL.tr_mul(&(frame.p_HL - self.X_HS.p_HL));
         let p_SMiddle = Rod::ball(frame.point(&object.p_OMiddle), 0.0).seen_from(&self.X_HS).a;

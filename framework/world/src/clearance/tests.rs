@@ -107,7 +107,8 @@ fn random_configuration(hand: &ChainHand, random: &mut Random) -> Configuration 
     Configuration { X_HO, joints, contacts: PerFinger::filled(count, None) }
 }
 
-/// Whether the answer agrees with the exact distances of the pairs that it is about; undecided where they are within rounding.
+/// Whether the answer agrees with the exact distances of the pairs that it is about; undecided where they are
+/// within rounding.
 fn check(answer: Result<(), BodyPair>, exact: &[PairDistance], about: impl Fn(&BodyPair) -> bool) -> bool {
     let least = |pair: &PairDistance| about(&pair.pair).then_some(pair.distance);
     let closest = exact.iter().filter_map(least).fold(f64::INFINITY, f64::min);

@@ -8,7 +8,8 @@ use regrasp_api::{
     TipKinematics, Vec3, cross_matrix,
 };
 
-/// The frame of a link L in the hand's frame H, with the rotation as a matrix: cheaper to apply to points than a [`Pose`].
+/// The frame of a link L in the hand's frame H, with the rotation as a matrix: cheaper to apply to points
+/// than a [`Pose`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkFrame {
     /// Orientation of L in H.
@@ -54,7 +55,8 @@ fn rotation(R: &Mat3) -> Rotation {
 
 /// The step from the frame of the link before (P) to the frame of the joint's own link (L).
 ///
-/// Revolute: R_PL(q) = R0 + sin q · R0 K + (1 - cos q) · R0 K², K = [a]× (Rodrigues). Prismatic: p_PL(q) = p0 + q R0 a.
+/// Revolute: R_PL(q) = R0 + sin q · R0 K + (1 - cos q) · R0 K², K = [a]× (Rodrigues). Prismatic: p_PL(q) = p0
+/// + q R0 a.
 #[derive(Clone, Debug)]
 struct LinkStep {
     kind: JointKind,
@@ -90,8 +92,8 @@ impl LinkStep {
 
 /// A finger's geometry, in two forms: link after link, and as screws in H (product of exponentials).
 ///
-/// The second needs no matrices to place the tip alone (Brockett, "Robotic manipulators and the product of exponentials
-/// formula", MTNS 1983): p_HF = e₁(q₁) … eₙ(qₙ) p_HF(0).
+/// The second needs no matrices to place the tip alone (Brockett, "Robotic manipulators and the product of
+/// exponentials formula", MTNS 1983): p_HF = e₁(q₁) … eₙ(qₙ) p_HF(0).
 #[derive(Clone, Debug)]
 pub(super) struct FingerChain {
     X_HB: LinkFrame,
@@ -101,7 +103,8 @@ pub(super) struct FingerChain {
     pub screws: Vec<Screw>,
     /// The fingertip's centre in H, all joints at 0 (m).
     pub p_HF0: Vec3,
-    /// The joints that others drive; whatever positions they are given, they are taken to be where their drivers have them.
+    /// The joints that others drive; whatever positions they are given, they are taken to be where their
+    /// drivers have them.
     pub couplings: Vec<Coupling>,
 }
 
@@ -164,7 +167,8 @@ impl FingerChain {
         joints
     }
 
-    /// Centre, orientation and Jacobians of the fingertip; the columns of driven joints are zero, their drivers' hold what both do.
+    /// Centre, orientation and Jacobians of the fingertip; the columns of driven joints are zero, their
+    /// drivers' hold what both do.
     pub fn tip_kinematics(&self, joints: &FingerJoints) -> TipKinematics {
         let mut room = LinkFrame::room();
         let frames = self.frames(joints, &mut room);

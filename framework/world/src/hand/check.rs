@@ -117,7 +117,8 @@ fn check_driven(key: &str, value: f64, expected: f64) -> Result<(), HandError> {
     check_range(key, value, (expected - DRIVEN, expected + DRIVEN), hint)
 }
 
-/// The driver must be another joint of the finger that moves by itself, and may not push the driven joint beyond its limits.
+/// The driver must be another joint of the finger that moves by itself, and may not push the driven joint
+/// beyond its limits.
 fn check_mimic(
     key: &str,
     mimic: &Mimic,

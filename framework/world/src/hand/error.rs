@@ -3,7 +3,8 @@
 use regrasp_api::{PoseError, Refusal, Refuse};
 use thiserror::Error;
 
-/// Why a hand's description is refused; each message names the key, the value, the allowed range and the likely fix.
+/// Why a hand's description is refused; each message names the key, the value, the allowed range and the
+/// likely fix.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum HandError {
@@ -45,7 +46,8 @@ pub enum HandError {
     },
     /// Lower limit not below the upper one.
     #[error(
-        "`{key}.lower` = {lower} must be less than `{key}.upper` = {upper}; a joint that does not move belongs into the next `origin`"
+        "`{key}.lower` = {lower} must be less than `{key}.upper` = {upper}; a joint that does not move \
+            belongs into the next `origin`"
     )]
     EmptyLimits {
         /// Path of the joint, such as `finger[1].joint[2]`.
@@ -105,7 +107,8 @@ pub enum HandError {
     },
     /// A driver takes its driven joint beyond the limits.
     #[error(
-        "`{key}.mimic`: at the {end} limit of \"{driver}\" the joint stands at {driven}, outside its own limits {}..={}; narrow the limits of \"{driver}\"",
+        "`{key}.mimic`: at the {end} limit of \"{driver}\" the joint stands at {driven}, outside its own \
+            limits {}..={}; narrow the limits of \"{driver}\"",
         limits.0, limits.1
     )]
     DrivenTooFar {
@@ -122,7 +125,8 @@ pub enum HandError {
     },
     /// `touching` names a body that there is not, or that is not the only one of that name.
     #[error(
-        "`{key}` = \"{name}\" must be `palm`, a joint (for the link behind it) or a finger (for its tip), and no two of these"
+        "`{key}` = \"{name}\" must be `palm`, a joint (for the link behind it) or a finger (for its tip), \
+            and no two of these"
     )]
     NoSuchBody {
         /// Path of the key, such as `touching[0][1]`.
@@ -132,7 +136,8 @@ pub enum HandError {
     },
     /// A finger that cannot place its tip freely in space.
     #[error(
-        "finger \"{finger}\" (`{key}`) has {independent} independent joints, at least three are needed: its tip must be able to move in all directions; add a joint or change an axis"
+        "finger \"{finger}\" (`{key}`) has {independent} independent joints, at least three are needed: its \
+            tip must be able to move in all directions; add a joint or change an axis"
     )]
     TooFewIndependentJoints {
         /// The finger's name.

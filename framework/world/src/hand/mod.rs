@@ -1,8 +1,10 @@
-//! Hands of fingers that are serial chains of joints: forward and inverse kinematics, limits, frames of the links.
+//! Hands of fingers that are serial chains of joints: forward and inverse kinematics, limits, frames of the
+//! links.
 //!
-//! [`ChainHand::new`] checks a [`HandDescription`] (what a file under `scenarios/hands` holds) and prepares it; the hand
-//! then answers the planner through [`Hand`] and the clearance through [`ChainHand::link_frames`] and its siblings. A bad
-//! description is refused with a [`HandError`] that names the key.
+//! [`ChainHand::new`] checks a [`HandDescription`] (what a file under `scenarios/hands` holds) and prepares
+//! it; the hand then answers the planner through [`Hand`] and the clearance through
+//! [`ChainHand::link_frames`] and its siblings. A bad description is refused with a [`HandError`] that names
+//! the key.
 //!
 //! | question | file |
 //! |---|---|
@@ -18,22 +20,24 @@
 //! | Is the description sound? | `check.rs`, messages in `error.rs` |
 //!
 //! # Frames
-//! H is the hand (palm, fixed in the world), B a finger's base, L the link behind a joint. Link k's frame is the moved
-//! frame of joint k: X_HLₖ(q) = X_HB · origin₀ · motion₀(q₀) ⋯ originₖ · motionₖ(qₖ). The fingertip's ball F is centred at the
-//! description's `tip` in the last link's frame, and turns with it.
+//! H is the hand (palm, fixed in the world), B a finger's base, L the link behind a joint. Link k's frame is
+//! the moved frame of joint k: X_HLₖ(q) = X_HB · origin₀ · motion₀(q₀) ⋯ originₖ · motionₖ(qₖ). The
+//! fingertip's ball F is centred at the description's `tip` in the last link's frame, and turns with it.
 //!
 //! # Inverse kinematics
-//! Three joints of each finger are solved for. With more, the best conditioned three are chosen, those with a closed form
-//! first (the rule in full: `spare::choose`); the others are the model's `spare` and stay where `near` has them.
+//! Three joints of each finger are solved for. With more, the best conditioned three are chosen, those with a
+//! closed form first (the rule in full: `spare::choose`); the others are the model's `spare` and stay where
+//! `near` has them.
 //!
-//! - Three revolute joints, the last two or the first two parallel: closed form. All solutions are found (up to four); the axes
-//!   may meet or not and stand at any angle.
+//! - Three revolute joints, the last two or the first two parallel: closed form. All solutions are found (up
+//!   to four); the axes may meet or not and stand at any angle.
 //! - Three prismatic joints: closed form; the solution is unique.
-//! - A finger with a joint that another drives, and anything else: Levenberg-Marquardt from `near`, then from ten fixed other starts. It may miss a solution, never
-//!   invent one.
+//! - A finger with a joint that another drives, and anything else: Levenberg-Marquardt from `near`, then from
+//!   ten fixed other starts. It may miss a solution, never invent one.
 //!
-//! A solution within 1e-10 (rad; m) of a limit is moved onto it. "Closest to `near`" means the smallest sum of squared
-//! differences over the three joints; the numeric method takes the solution that continues from `near` if there is one.
+//! A solution within 1e-10 (rad; m) of a limit is moved onto it. "Closest to `near`" means the smallest sum
+//! of squared differences over the three joints; the numeric method takes the solution that continues from
+//! `near` if there is one.
 
 mod chain;
 mod check;
@@ -109,9 +113,11 @@ impl ChainHand {
         &self.description
     }
 
-    /// The frames X_HL of the links of a finger, base to tip: link k is the one behind joint k. The fingertip's ball belongs to the last.
+    /// The frames X_HL of the links of a finger, base to tip: link k is the one behind joint k. The
+    /// fingertip's ball belongs to the last.
     ///
-    /// No allocation: `let mut room = LinkFrame::room(); let frames = hand.link_frames(finger, joints, &mut room);`
+    /// No allocation: `let mut room = LinkFrame::room(); let frames = hand.link_frames(finger, joints, &mut
+    /// room);`
     #[inline]
     pub fn link_frames<'a>(
         &self,

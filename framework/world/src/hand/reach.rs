@@ -15,7 +15,8 @@ const BOXES: usize = 4000;
 /// The radius may exceed the smallest one about its centre by this share.
 const EXCESS: f64 = 0.005;
 
-/// A ball that holds the tips of all postures in a box, the tip of its middle, and which joint adds most to the ball's radius.
+/// A ball that holds the tips of all postures in a box, the tip of its middle, and which joint adds most to
+/// the ball's radius.
 struct Swept {
     center: Vec3,
     radius: f64,
@@ -130,8 +131,8 @@ pub(super) fn reach_ball(screws: &[Screw], p_HF0: &Vec3, ranges: &[JointRange]) 
 
 /// An upper bound of the tips' distances (m) from `center`.
 ///
-/// Branch and bound over boxes of all joints but the first, whose arc is treated exactly: half a percent above the largest
-/// distance, unless the count of boxes runs out first.
+/// Branch and bound over boxes of all joints but the first, whose arc is treated exactly: half a percent
+/// above the largest distance, unless the count of boxes runs out first.
 fn largest_distance(screws: &[Screw], p_HF0: &Vec3, ranges: &[JointRange], center: &Vec3) -> f64 {
     let whole = std::array::from_fn(|k| ranges.get(k).map_or((0.0, 0.0), |range| (range.lower, range.upper)));
     let mut worst = Cell::new(screws, p_HF0, whole, center);
@@ -162,7 +163,8 @@ fn tips(screws: &[Screw], p_HF0: &Vec3, ranges: &[JointRange]) -> Vec<Vec3> {
     (0..POSTURES).map(|_| tip()).collect()
 }
 
-/// Nearly the centre of the smallest ball about the points (Bădoiu & Clarkson, "Smaller core-sets for balls", SODA 2003).
+/// Nearly the centre of the smallest ball about the points (Bădoiu & Clarkson, "Smaller core-sets for balls",
+/// SODA 2003).
 fn enclosing_center(points: &[Vec3]) -> Vec3 {
     let mut center = points.iter().sum::<Vec3>() / points.len() as f64;
     for round in 1..=200 {

@@ -1,7 +1,8 @@
 //! The motion of one joint as a screw in the hand's frame.
 //!
-//! R. Murray, Z. Li, S. Sastry, "A mathematical introduction to robotic manipulation", CRC Press 1994, section 3.2: a revolute joint turns about a
-//! line, a prismatic one slides along it, and a chain's pose is the product of these motions.
+//! R. Murray, Z. Li, S. Sastry, "A mathematical introduction to robotic manipulation", CRC Press 1994,
+//! section 3.2: a revolute joint turns about a line, a prismatic one slides along it, and a chain's pose is
+//! the product of these motions.
 
 use regrasp_api::{JointKind, Vec3};
 
@@ -68,7 +69,8 @@ impl Screw {
     }
 }
 
-/// The vector `v` turned about the unit vector `axis` by the angle with the given sine and cosine (Rodrigues).
+/// The vector `v` turned about the unit vector `axis` by the angle with the given sine and cosine
+/// (Rodrigues).
 #[inline]
 pub(super) fn turn(axis: &Vec3, v: &Vec3, sin: f64, cos: f64) -> Vec3 {
     v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos))

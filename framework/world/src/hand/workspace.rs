@@ -10,7 +10,8 @@ const POSTURES: usize = 20_000;
 const CUBE: f64 = 4e-3;
 /// Places of an object that are looked at along each axis of the box that all fingers share.
 const PLACES: usize = 16;
-/// How far (m) a fingertip's centre may be from the offset surface of the ball and still count as touching it.
+/// How far (m) a fingertip's centre may be from the offset surface of the ball and still count as touching
+/// it.
 const SHELL: f64 = 3e-3;
 
 /// Where one fingertip reaches.
@@ -20,7 +21,8 @@ pub struct FingerWorkspace {
     pub lower: Vec3,
     /// Highest coordinates of the fingertip's centre in H (m).
     pub upper: Vec3,
-    /// Volume of the places that the fingertip's centre reaches (m³), to some 10 %; collisions are not looked at.
+    /// Volume of the places that the fingertip's centre reaches (m³), to some 10 %; collisions are not looked
+    /// at.
     pub volume: f64,
 }
 
@@ -29,7 +31,8 @@ pub struct FingerWorkspace {
 pub struct ObjectPlace {
     /// Centre of the object in H (m).
     pub p_HO: Vec3,
-    /// How well the fingers surround a ball there, in [0, 1]: 0 where some finger does not reach it, or all push in one direction.
+    /// How well the fingers surround a ball there, in [0, 1]: 0 where some finger does not reach it, or all
+    /// push in one direction.
     pub quality: f64,
 }
 
@@ -45,10 +48,11 @@ pub fn finger_workspace(hand: &ChainHand, finger: FingerIndex) -> FingerWorkspac
 
 /// Where the fingertips can best surround a ball of this radius (m); `None` where they cannot.
 ///
-/// Over a grid: the mean of the directions from which each finger's tip reaches the ball. The quality falls with the share of postures in which the
-/// worst finger touches it, and with the length of the sum of all fingers' directions, which is zero where they push against each other. Links and
-/// palm are kept out of the ball only roughly: no fingertip that touches from below the palm's side counts more than others. A hint, no proof: `plan`
-/// tells.
+/// Over a grid: the mean of the directions from which each finger's tip reaches the ball. The quality falls
+/// with the share of postures in which the worst finger touches it, and with the length of the sum of all
+/// fingers' directions, which is zero where they push against each other. Links and palm are kept out of the
+/// ball only roughly: no fingertip that touches from below the palm's side counts more than others. A hint,
+/// no proof: `plan` tells.
 pub fn object_place(hand: &ChainHand, radius: f64) -> Option<ObjectPlace> {
     let fingers: Vec<Vec<Vec3>> =
         (0..hand.finger_count() as u8).map(|finger| tips(hand, FingerIndex(finger))).collect();

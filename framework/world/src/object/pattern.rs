@@ -7,8 +7,8 @@ use std::f64::consts::{PI, TAU};
 /// Vertices (m) and facets, counter-clockwise seen from outside.
 pub(super) type Facets = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// How much longer than wide the cells of a straight side may be: longer cells would make slivers, shorter ones waste
-/// facets where the surface is straight.
+/// How much longer than wide the cells of a straight side may be: longer cells would make slivers, shorter
+/// ones waste facets where the surface is straight.
 const CELL_ASPECT: f64 = 4.0;
 
 /// The pattern of `primitive` whose number of facets comes nearest to `wished`.
@@ -27,7 +27,8 @@ pub(super) fn facets_of(primitive: &Primitive, wished: usize) -> Facets {
     }
 }
 
-/// An icosahedron whose facets are quartered k times (20 · 4^k facets), its vertices pushed onto the ellipsoid.
+/// An icosahedron whose facets are quartered k times (20 · 4^k facets), its vertices pushed onto the
+/// ellipsoid.
 fn icosphere(semi_axes: Vec3, wished: usize) -> Facets {
     let (mut vertices, mut facets) = icosahedron();
     // The next finer pattern is nearer as soon as the wish exceeds the mean of the two.

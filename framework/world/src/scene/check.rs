@@ -8,15 +8,17 @@ use regrasp_api::{
 };
 use std::collections::BTreeMap;
 
-/// An object this many times larger than the hand's fingers reach, or smaller, has probably another unit of length.
+/// An object this many times larger than the hand's fingers reach, or smaller, has probably another unit of
+/// length.
 const TOO_LARGE: f64 = 50.0;
 const TOO_SMALL: f64 = 1.0 / 200.0;
 
 /// Allowed numbers: key, value, lowest, highest, unit.
 type Bound = (&'static str, f64, f64, f64, &'static str);
 
-/// Refuses what can be told to be wrong from the description alone: numbers out of range, goals that coincide, grasps that do not fit the
-/// hand, obstacles of one name. Hand, object and meshes are checked where they are built.
+/// Refuses what can be told to be wrong from the description alone: numbers out of range, goals that
+/// coincide, grasps that do not fit the hand, obstacles of one name. Hand, object and meshes are checked
+/// where they are built.
 pub fn check_problem(problem: &Problem) -> Result<(), WorldError> {
     check_limits(&problem.limits)?;
     for (key, g) in ["gravity[0]", "gravity[1]", "gravity[2]"].into_iter().zip(problem.gravity) {
@@ -105,7 +107,8 @@ pub(super) fn obstacle_names(obstacles: &[ObstacleDescription]) -> Result<Vec<St
     Ok(names)
 }
 
-/// Refuses an object that is far too large or too small for the hand: its unit of length is probably mistaken.
+/// Refuses an object that is far too large or too small for the hand: its unit of length is probably
+/// mistaken.
 pub fn check_units(hand: &ChainHand, object: &ObjectModel, shape: &ObjectShape) -> Result<(), WorldError> {
     let fingers = (0..hand.finger_count() as u8).map(regrasp_api::FingerIndex);
     let reach = fingers.map(|finger| hand.finger(finger).reach).fold(0.0, f64::max);
@@ -120,7 +123,8 @@ pub fn check_units(hand: &ChainHand, object: &ObjectModel, shape: &ObjectShape) 
         _ => format!("lengths multiplied by {factor}"),
     };
     let reason = format!(
-        "the object reaches {size:.3e} m from its origin, the fingers {reach:.3e} m from their bases: too {how} by far; \
+        "the object reaches {size:.3e} m from its origin, the fingers {reach:.3e} m from their bases: too \
+            {how} by far; \
          are the lengths in metres? Try {fix}"
     );
     Err(WorldError::value("object.shape", reason))
@@ -158,7 +162,8 @@ fn coincide(tolerances: &Tolerances, X_HA: &Pose, X_HB: &Pose) -> bool {
 
 fn coincidence(goal: usize, before: &str) -> WorldError {
     let reason = format!(
-        "`goal[{goal}]` coincides with {before}: there is nothing to do; a full turn is given as several goals, for example four quarters"
+        "`goal[{goal}]` coincides with {before}: there is nothing to do; a full turn is given as several \
+            goals, for example four quarters"
     );
     WorldError::value(format!("goal[{goal}].pose"), reason)
 }

@@ -34,7 +34,8 @@ pub struct World {
 impl World {
     /// Checks a problem and prepares it; its meshes are given in place.
     ///
-    /// Only what can be told without planning is checked: whether a given grasp holds, or a start collides, is not.
+    /// Only what can be told without planning is checked: whether a given grasp holds, or a start collides,
+    /// is not.
     pub fn new(problem: &Problem) -> Result<Self, WorldError> {
         check_problem(problem)?;
         let hand = Arc::new(ChainHand::new(problem.hand.clone())?);

@@ -107,7 +107,8 @@ fn tips_out_of_reach_or_beyond_the_limits_are_refused() {
     assert!(free.inverse(FIRST, &Vec3::new(0.0849, 0.0, 0.085), &rest).is_some());
 }
 
-/// Every solution that Newton's method finds from many starts, by brute force on the public forward kinematics.
+/// Every solution that Newton's method finds from many starts, by brute force on the public forward
+/// kinematics.
 fn all_solutions(hand: &ChainHand, p_HF: &Vec3, random: &mut Random) -> Vec<FingerJoints> {
     let mut found = Vec::new();
     for _ in 0..60 {

@@ -1,4 +1,5 @@
-//! Hands: forward kinematics and Jacobians against independent formulas, inverse kinematics, limits, reach, bad descriptions.
+//! Hands: forward kinematics and Jacobians against independent formulas, inverse kinematics, limits, reach,
+//! bad descriptions.
 
 mod bad;
 mod driven;

@@ -1,17 +1,21 @@
-//! `local-planner/fixed-point`: the object moves straight, contact points stay where they are on object and fingertip.
+//! `local-planner/fixed-point`: the object moves straight, contact points stay where they are on object and
+//! fingertip.
 //!
-//! For hands that declare `fingertip = "point"`. The classical point contact: the contact is fixed in both bodies, and the finger turns freely about it
-//! (Salisbury & Roth, "Kinematic and force analysis of articulated mechanical hands", ASME JMTAD 1983; Li, Hsu, Sastry, "Grasping and coordinated
-//! manipulation by a multifingered robot hand", IJRR 1989, who assume fixed points of contact). The other model of the same transfer,
-//! `local-planner/rolling`, is for fingertips that are balls.
+//! For hands that declare `fingertip = "point"`. The classical point contact: the contact is fixed in both
+//! bodies, and the finger turns freely about it (Salisbury & Roth, "Kinematic and force analysis of
+//! articulated mechanical hands", ASME JMTAD 1983; Li, Hsu, Sastry, "Grasping and coordinated manipulation by
+//! a multifingered robot hand", IJRR 1989, who assume fixed points of contact). The other model of the same
+//! transfer, `local-planner/rolling`, is for fingertips that are balls.
 //!
-//! In this project's geometry a fingertip is a ball of radius r that touches at p along the normal n. A declared point keeps p *and* n while the object
-//! moves: the ball's centre rides on the object at p + r n, so that the ball stays a tangent collision shape, and only the joints turn. What the
-//! idealisation neglects is of the order of r times the angle turned; a hand that declares points should have small fingertips.
+//! In this project's geometry a fingertip is a ball of radius r that touches at p along the normal n. A
+//! declared point keeps p *and* n while the object moves: the ball's centre rides on the object at p + r n,
+//! so that the ball stays a tangent collision shape, and only the joints turn. What the idealisation neglects
+//! is of the order of r times the angle turned; a hand that declares points should have small fingertips.
 //!
-//! There is nothing to integrate: inverse kinematics puts each centre where the object carries it. The numbers that remain are how closely the
-//! straight motion of the joints between two states follows, and that is what steps are halved for. Contacts do not drift, so a transfer
-//! ends where rolling would not: with the contacts it began with.
+//! There is nothing to integrate: inverse kinematics puts each centre where the object carries it. The
+//! numbers that remain are how closely the straight motion of the joints between two states follows, and that
+//! is what steps are halved for. Contacts do not drift, so a transfer ends where rolling would not: with the
+//! contacts it began with.
 //!
 //! ```toml
 //! [plugins.local-planner.transfer]
@@ -37,8 +41,8 @@ const SLOT: Slot = Slot::TransferPlanner;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FixedPointSettings {
-    /// What part of the task's tolerances for closure and slip the fingertip may stray between two states. Default: half,
-    /// as the plan's meaning asks.
+    /// What part of the task's tolerances for closure and slip the fingertip may stray between two states.
+    /// Default: half, as the plan's meaning asks.
     #[schemars(range(min = 0.01, max = 1.0), extend("x-unit" = "1"))]
     pub tolerance_share: f64,
     /// How often a step may be halved before the contact counts as lost. Our choice.
@@ -54,11 +58,12 @@ impl Default for FixedPointSettings {
 
 impl Settings for FixedPointSettings {}
 
-/// Moves the object straight to a pose, every holding fingertip pinned to its contact point; free fingers stay.
+/// Moves the object straight to a pose, every holding fingertip pinned to its contact point; free fingers
+/// stay.
 ///
-/// Refused when it is built for a hand whose fingertips are balls. Stops at the last valid state: at a joint's limit (`limits`), out of
-/// reach or at a singularity (`reach`), at a collision, where the grasp is no longer stable, and where steps of the finest length still stray
-/// (`closure`).
+/// Refused when it is built for a hand whose fingertips are balls. Stops at the last valid state: at a
+/// joint's limit (`limits`), out of reach or at a singularity (`reach`), at a collision, where the grasp is
+/// no longer stable, and where steps of the finest length still stray (`closure`).
 #[derive(Clone, Debug)]
 pub struct FixedPoint {
     settings: FixedPointSettings,
@@ -130,7 +135,8 @@ impl LocalPlanner for FixedPoint {
     }
 }
 
-/// Steps as far as the pace and what remains allow, halving until the fingertips stay pinned in between: how far the object has come then.
+/// Steps as far as the pace and what remains allow, halving until the fingertips stay pinned in between: how
+/// far the object has come then.
 fn step(
     pinned: &Pinned<'_>,
     (q, s): (&Configuration, f64),
@@ -150,8 +156,8 @@ fn step(
     Err(Reason::Closure)
 }
 
-/// What is wrong with a state: stability first, because it costs less than collision. In the object's frame the contacts rest, but gravity
-/// turns.
+/// What is wrong with a state: stability first, because it costs less than collision. In the object's frame
+/// the contacts rest, but gravity turns.
 fn fault(
     task: &Task<'_>,
     q: &Configuration,
@@ -169,11 +175,15 @@ regrasp_api::inventory::submit! {
     Entry {
         id: ID,
         slots: &[SLOT],
-        summary: "the object moves straight, contact points stay put: for hands that declare point fingertips",
+        summary: "the object moves straight, contact points stay put: for hands that declare point \
+            fingertips",
         references: &[
-            "J. K. Salisbury, B. Roth, Kinematic and force analysis of articulated mechanical hands, ASME JMTAD 1983",
-            "Z. Li, P. Hsu, S. Sastry, Grasping and coordinated manipulation by a multifingered robot hand, IJRR 1989",
-            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007",
+            "J. K. Salisbury, B. Roth, Kinematic and force analysis of articulated mechanical hands, ASME \
+                JMTAD 1983",
+            "Z. Li, P. Hsu, S. Sastry, Grasping and coordinated manipulation by a multifingered robot hand, \
+                IJRR 1989",
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation \
+                planning, SSD 2007",
         ],
         schema: FixedPointSettings::schema,
         check: check_settings::<FixedPointSettings>,

@@ -27,8 +27,8 @@ pub(crate) enum Failure {
 }
 
 impl Pinned<'_> {
-    /// Makes `next` the state at `s.1` of the motion, `q` being the one at `s.0`; or says why there is none (then `next` means nothing). Collision
-    /// and stability are not looked at.
+    /// Makes `next` the state at `s.1` of the motion, `q` being the one at `s.0`; or says why there is none
+    /// (then `next` means nothing). Collision and stability are not looked at.
     pub fn advance(&self, q: &Configuration, s: (f64, f64), next: &mut Configuration) -> Result<(), Failure> {
         next.clone_from(q);
         next.X_HO = self.motion.pose(s.1);
@@ -48,7 +48,8 @@ impl Pinned<'_> {
         Ok(())
     }
 
-    /// The finger's joints with its tip's centre at `p_HF` (m), near those of `q`; spare joints move as little as they need.
+    /// The finger's joints with its tip's centre at `p_HF` (m), near those of `q`; spare joints move as
+    /// little as they need.
     fn follow(&self, q: &Configuration, finger: FingerIndex, p_HF: &Vec3) -> Result<FingerJoints, Failure> {
         let (hand, start) = (self.task.hand, &q.joints[finger]);
         let tip = hand.tip_kinematics(finger, start);

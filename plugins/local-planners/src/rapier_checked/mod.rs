@@ -1,10 +1,13 @@
-//! `local-planner/rapier-checked`: the transfer that rolling finds, simulated, and refused if the object strays or a finger slips.
+//! `local-planner/rapier-checked`: the transfer that rolling finds, simulated, and refused if the object
+//! strays or a finger slips.
 //!
-//! Rolling is kinematics: it knows where the fingertips must be, and that a force exists that holds the object there. Whether fingers with
-//! motors of a finite stiffness, joints of a limited effort and contacts that only friction holds really carry the object through is asked here:
-//! see `regrasp_physics` for what is simulated and what is left out.
+//! Rolling is kinematics: it knows where the fingertips must be, and that a force exists that holds the
+//! object there. Whether fingers with motors of a finite stiffness, joints of a limited effort and contacts
+//! that only friction holds really carry the object through is asked here: see `regrasp_physics` for what is
+//! simulated and what is left out.
 //!
-//! Rapier's contacts transmit no torque about their normal. A contact model that counts on one (`soft-finger`) is refused with that reason.
+//! Rapier's contacts transmit no torque about their normal. A contact model that counts on one
+//! (`soft-finger`) is refused with that reason.
 //!
 //! ```toml
 //! [plugins."local-planner.transfer"]
@@ -26,11 +29,13 @@ pub use settings::RapierCheckedSettings;
 const ID: &str = "local-planner/rapier-checked";
 const SLOT: Slot = Slot::TransferPlanner;
 
-/// Rolls as [`Rolling`] does, then simulates the motion with the hand as jointed bodies driven by motors and the object free under gravity.
+/// Rolls as [`Rolling`] does, then simulates the motion with the hand as jointed bodies driven by motors and
+/// the object free under gravity.
 ///
-/// Refused with `stray` where the object leaves its planned pose by more than the bounds, with `slip` where a fingertip slips or loses the object,
-/// with `stability` where no forces within cones and joint efforts hold the object. What was refused is cut to half of what went well and
-/// simulated again a few times: every motion that is returned was itself simulated to its end and held there for a moment. What stops
+/// Refused with `stray` where the object leaves its planned pose by more than the bounds, with `slip` where a
+/// fingertip slips or loses the object, with `stability` where no forces within cones and joint efforts hold
+/// the object. What was refused is cut to half of what went well and simulated again a few times: every
+/// motion that is returned was itself simulated to its end and held there for a moment. What stops
 /// [`Rolling`] stops this planner too.
 ///
 /// Cost: about a millisecond for each degree that the object turns, a thousand times that of rolling alone.
@@ -148,7 +153,8 @@ regrasp_api::inventory::submit! {
         slots: &[SLOT],
         summary: "rolling, then simulated in rapier3d: refused if the object strays or a fingertip slips",
         references: &[
-            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007",
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation \
+                planning, SSD 2007",
             "S. Boyd, B. Wegbreit, Fast computation of optimal contact forces, IEEE T-RO 2007",
             "J. K. Salisbury, Active stiffness control of a manipulator in Cartesian coordinates, CDC 1980",
             "Dimforge, Rapier, a physics engine in Rust, version 0.36",

@@ -56,7 +56,8 @@ impl<'a> Flight<'a> {
         self.levers.between(self.finger, a, b)
     }
 
-    /// Whether the straight motion of the joints between two free postures is free, looked at every `step` (m) of travel.
+    /// Whether the straight motion of the joints between two free postures is free, looked at every `step`
+    /// (m) of travel.
     pub fn free_between(&self, a: &FingerJoints, b: &FingerJoints, step: f64) -> bool {
         let count = self.count(a, b, step);
         bisection(count)

@@ -6,7 +6,8 @@ use regrasp_api::{Contact, FingerJoints, Reason, SurfacePath, slerp_normals};
 
 /// Fills `lengths` with how far (m) a fingertip has travelled at each waypoint when it moves at `height` (m).
 ///
-/// The lift's own length is that of height 0; where the normal turns by an angle, the centre's arc is longer by height times angle.
+/// The lift's own length is that of height 0; where the normal turns by an angle, the centre's arc is longer
+/// by height times angle.
 fn measure(slide: &SurfacePath, height: f64, lengths: &mut Vec<f64>) {
     lengths.clear();
     lengths.push(0.0);
@@ -33,8 +34,8 @@ fn contact_at(slide: &SurfacePath, lengths: &[f64], length: f64) -> Contact {
 }
 
 impl Flight<'_> {
-    /// Appends the way from the lifted posture `a`, without it, to `b` above the contacts of `slide`, the height (m) going
-    /// straight from `low` to `high`; or says what bars it.
+    /// Appends the way from the lifted posture `a`, without it, to `b` above the contacts of `slide`, the
+    /// height (m) going straight from `low` to `high`; or says what bars it.
     pub fn follow(
         &self,
         slide: &SurfacePath,

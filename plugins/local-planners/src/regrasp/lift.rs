@@ -4,7 +4,8 @@ use super::flight::Flight;
 use crate::common::largest_travel;
 use regrasp_api::{Contact, FingerJoints, TipRule};
 
-/// A posture on the way up, with the fingertip's distance (m) from the object and its height (m) along the normal.
+/// A posture on the way up, with the fingertip's distance (m) from the object and its height (m) along the
+/// normal.
 #[derive(Clone, Copy)]
 struct Rung {
     joints: FingerJoints,
@@ -16,11 +17,11 @@ struct Rung {
 const HALVINGS: usize = 6;
 
 impl Flight<'_> {
-    /// Replaces `postures` by the way from `joints`, without it, straight up along the contact's normal to `height` (m);
-    /// false where the finger cannot go.
+    /// Replaces `postures` by the way from `joints`, without it, straight up along the contact's normal to
+    /// `height` (m); false where the finger cannot go.
     ///
-    /// The fingertip's distance from the object rises all the way, also while the joints move straight between two of the
-    /// postures, and is at least `lowest` (m) at the end.
+    /// The fingertip's distance from the object rises all the way, also while the joints move straight
+    /// between two of the postures, and is at least `lowest` (m) at the end.
     pub fn lift(
         &self,
         contact: &Contact,
@@ -47,7 +48,8 @@ impl Flight<'_> {
         rung.gap >= lowest
     }
 
-    /// One rung higher, to the height `to` (m), with more rungs in between where the joints' straight motion needs them.
+    /// One rung higher, to the height `to` (m), with more rungs in between where the joints' straight motion
+    /// needs them.
     fn climb(
         &self,
         contact: &Contact,
@@ -67,7 +69,8 @@ impl Flight<'_> {
             let middle = self.climb(contact, rung, 0.5 * (rung.height + to), halvings, postures)?;
             return self.climb(contact, middle, to, halvings, postures);
         }
-        // Along the normal of a convex object the gap is the height; half of it leaves room for a neighbouring wall.
+        // Along the normal of a convex object the gap is the height; half of it leaves room for a
+        // neighbouring wall.
         let clear = (0.5 * to).min(self.clear());
         self.free(&joints, TipRule::Clear(clear)).then(|| {
             postures.push(joints);
@@ -77,8 +80,8 @@ impl Flight<'_> {
 
     /// Whether the gap rises while the joints move straight from one rung to the next.
     ///
-    /// The gap differs from a straight line by a parabola, to leading order: it rises throughout as long as the parabola's height is
-    /// less than a quarter of the difference.
+    /// The gap differs from a straight line by a parabola, to leading order: it rises throughout as long as
+    /// the parabola's height is less than a quarter of the difference.
     fn rises(&self, contact: &Contact, a: &Rung, b: &Rung) -> bool {
         let middle = self.task.hand.tip_center(self.finger, &a.joints.interpolate(&b.joints, 0.5));
         let bow = self.gap(&middle, contact) - 0.5 * (a.gap + b.gap);

@@ -1,14 +1,14 @@
 //! The velocity constraint of rolling contact and its solution for one finger.
 //!
-//! A. Cole, J. Hauser, S. Sastry, "Kinematics and control of multifingered hands with rolling contact", IEEE T-AC 1989: the material points of both bodies
-//! at the contact have one velocity.
+//! A. Cole, J. Hauser, S. Sastry, "Kinematics and control of multifingered hands with rolling contact", IEEE
+//! T-AC 1989: the material points of both bodies at the contact have one velocity.
 
 use regrasp_api::{FingerJoints, MAX_FINGER_JOINTS, Mat3, TipKinematics, Vec3};
 
 /// Velocity, in H, of the fingertip's material point at the contact, per joint speed.
 ///
-/// The tip is a ball of radius r about its centre; with the outward normal n the material point lies at -r n from the centre, so that
-/// v = J_v q' + J_w q' × (-r n) = Σ (J_v + r n × J_w)ⱼ q'ⱼ.
+/// The tip is a ball of radius r about its centre; with the outward normal n the material point lies at -r n
+/// from the centre, so that v = J_v q' + J_w q' × (-r n) = Σ (J_v + r n × J_w)ⱼ q'ⱼ.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactJacobian {
     columns: [Vec3; MAX_FINGER_JOINTS],
@@ -31,8 +31,8 @@ impl ContactJacobian {
         &self.columns[..self.count]
     }
 
-    /// The joint speeds that move the material point with velocity `v_H`, of least norm where joints are spare; `None` at a
-    /// singularity.
+    /// The joint speeds that move the material point with velocity `v_H`, of least norm where joints are
+    /// spare; `None` at a singularity.
     pub fn speeds(&self, v_H: &Vec3) -> Option<FingerJoints> {
         if let [a, b, c] = self.columns() {
             return solve([*a, *b, *c], v_H).map(|x| FingerJoints::from_slice(x.as_slice()));

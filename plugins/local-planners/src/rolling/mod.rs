@@ -2,6 +2,7 @@
 
 pub(crate) mod constraint;
 mod jump;
+mod roller;
 mod span;
 mod step;
 

@@ -1,6 +1,6 @@
 //! The motion that two consecutive states mean: does the contact stay closed in between?
 
-use super::step::{Roller, to_object};
+use super::roller::{Roller, to_object};
 use regrasp_api::{Contact, FingerIndex, FingerJoints, Pose, TipKinematics, Vec3, interpolate};
 
 /// Two states of one finger and what is known halfway.
@@ -19,7 +19,8 @@ pub(crate) struct Span<'a> {
 const UNKNOWN: f64 = 0.05;
 
 impl Roller<'_> {
-    /// Whether the contact opens or presses in by more than the bound while joints move linearly and the object by slerp.
+    /// Whether the contact opens or presses in by more than the bound while joints move linearly and the
+    /// object by slerp.
     pub fn opens(&self, span: &Span<'_>) -> bool {
         let gap = self.gap(span, &to_object(span.X_HMid, &self.middle(span))).abs();
         let bound = self.closure * (1.0 - UNKNOWN);
@@ -28,7 +29,8 @@ impl Roller<'_> {
 
     /// The fingertip's centre (m, in H) when the joints are halfway.
     ///
-    /// The integrator has looked nearby; where that is near enough, its derivatives carry the rest of the way.
+    /// The integrator has looked nearby; where that is near enough, its derivatives carry the rest of the
+    /// way.
     fn middle(&self, span: &Span<'_>) -> Vec3 {
         let ((a, b), (near, tip)) = (span.joints, span.middle);
         let middle = a.interpolate(b, 0.5);
@@ -55,10 +57,11 @@ impl Roller<'_> {
         self.task.surface.project(p_OF, Some(a.facet)).distance - self.radius
     }
 
-    /// Whether the contact opens too far a quarter of the way from an end, where the normal turned on an edge in between.
+    /// Whether the contact opens too far a quarter of the way from an end, where the normal turned on an edge
+    /// in between.
     ///
-    /// The gap of a single bend is concave along the step: at half the bound in the middle it may reach the bound elsewhere; from
-    /// middle and quarter points on, 4/3 of what they show bounds it.
+    /// The gap of a single bend is concave along the step: at half the bound in the middle it may reach the
+    /// bound elsewhere; from middle and quarter points on, 4/3 of what they show bounds it.
     fn opens_aside(&self, span: &Span<'_>) -> bool {
         if same_facet(span.contacts.0, span.contacts.1) {
             return false;

@@ -1,11 +1,10 @@
 //! One step of rolling: the midpoint rule, removal of drift, net slip.
 
-use super::{constraint::ContactJacobian, span::Span};
-use crate::common::Levers;
-use crate::transfer::Motion;
+use super::constraint::ContactJacobian;
+pub(crate) use super::roller::{Roller, to_hand, to_object};
+use super::span::Span;
 use regrasp_api::{
-    Configuration, Contact, FingerIndex, FingerJoints, FingerSet, PerFinger, Pose, Reason, Rotation, Task,
-    TipKinematics, Vec3,
+    Configuration, Contact, FingerIndex, FingerJoints, PerFinger, Pose, Reason, Rotation, TipKinematics, Vec3,
 };
 
 /// How far the object has come, and how every holding finger goes on from there.
@@ -30,33 +29,6 @@ pub(crate) enum Failure {
     Finer,
     /// The end.
     Stop(Reason),
-}
-
-/// What stays the same during one transfer.
-pub(crate) struct Roller<'a> {
-    pub task: &'a Task<'a>,
-    pub levers: &'a Levers,
-    pub motion: Motion,
-    pub holding: FingerSet,
-    pub is_convex: bool,
-    /// Fingertip radius (m).
-    pub radius: f64,
-    /// Largest closure residual (m) between states.
-    pub closure: f64,
-    /// Largest net slip (m).
-    pub slip: f64,
-    /// The most (m) that a fingertip's centre moves over the object in one step.
-    pub reach: f64,
-    /// The most (m) that a finger travels in one step.
-    pub travel: f64,
-}
-
-pub(crate) fn to_object(X_HO: &Pose, p_H: &Vec3) -> Vec3 {
-    X_HO.rotation.inverse_transform_vector(&(p_H - X_HO.translation.vector))
-}
-
-pub(crate) fn to_hand(X_HO: &Pose, p_O: &Vec3) -> Vec3 {
-    X_HO.rotation * p_O + X_HO.translation.vector
 }
 
 impl Roller<'_> {
@@ -105,8 +77,8 @@ impl Roller<'_> {
         ContactJacobian::new(tip, joints, &n_H, self.radius).speeds(&v_H)
     }
 
-    /// Makes `next` the state a part `h` of the motion further, or says why there is none (then `next` means nothing). Collision
-    /// and stability are not looked at.
+    /// Makes `next` the state a part `h` of the motion further, or says why there is none (then `next` means
+    /// nothing). Collision and stability are not looked at.
     pub fn advance(&self, state: &State, h: f64, next: &mut State) -> Result<(), Failure> {
         next.clone_from(state);
         // The last step ends at 1 exactly, whatever the sum of the steps before it.
@@ -133,8 +105,8 @@ impl Roller<'_> {
 
     /// One finger's step: joints and contact at its end.
     ///
-    /// The midpoint rule moves the fingertip's centre; then the centre is moved along the normal onto the offset surface and inverse
-    /// kinematics gives the joints, so that closure never drifts.
+    /// The midpoint rule moves the fingertip's centre; then the centre is moved along the normal onto the
+    /// offset surface and inverse kinematics gives the joints, so that closure never drifts.
     fn roll(
         &self,
         state: &State,
@@ -170,10 +142,12 @@ impl Roller<'_> {
         if self.opens(&span) { Err(Failure::Finer) } else { Ok((joints, end)) }
     }
 
-    /// Slip (m, in O) over one step: how far the fingertip's material point at the contact moves along the object.
+    /// Slip (m, in O) over one step: how far the fingertip's material point at the contact moves along the
+    /// object.
     ///
-    /// In O the tip's centre moves by Δc while the tip turns by the vector θ; with the normal n half-way its point at the contact moves by
-    /// Δc - θ × r n, whose tangential part rolling makes zero. Exact on a facet, of third order in θ elsewhere.
+    /// In O the tip's centre moves by Δc while the tip turns by the vector θ; with the normal n half-way its
+    /// point at the contact moves by Δc - θ × r n, whose tangential part rolling makes zero. Exact on a
+    /// facet, of third order in θ elsewhere.
     fn slip_of(&self, a: &State, b: &State, finger: FingerIndex) -> Vec3 {
         let (at_a, at_b) = (touching(&a.q, finger), touching(&b.q, finger));
         let turn = (b.R_OF[finger] * a.R_OF[finger].inverse()).scaled_axis();

@@ -1,4 +1,5 @@
-//! Two random trees that grow towards each other in the joint space of one finger (Kuffner & LaValle, ICRA 2000).
+//! Two random trees that grow towards each other in the joint space of one finger (Kuffner & LaValle, ICRA
+//! 2000).
 
 use super::RrtSettings;
 use crate::regrasp::Flight;
@@ -28,7 +29,8 @@ enum Growth {
     Reached(usize),
 }
 
-/// How coarsely edges are looked at while the trees grow (m of travel); the final way is looked at again, finely.
+/// How coarsely edges are looked at while the trees grow (m of travel); the final way is looked at again,
+/// finely.
 fn stride(flight: &Flight<'_>) -> f64 {
     2.0 * flight.task.resolution.regrasp_step
 }

@@ -1,4 +1,5 @@
-//! What transfer planners share: the object's straight motion, the length of steps, what fingertips they are for.
+//! What transfer planners share: the object's straight motion, the length of steps, what fingertips they are
+//! for.
 
 mod motion;
 mod pace;

@@ -13,7 +13,8 @@ impl Pace {
         Self { full, finest: full * 0.5_f64.powi(halvings as i32), now: full }
     }
 
-    /// The next step's length, at most `longest`; what remains is divided evenly, so that no splinter is left over.
+    /// The next step's length, at most `longest`; what remains is divided evenly, so that no splinter is left
+    /// over.
     pub fn next(&mut self, longest: f64, remains: f64) -> f64 {
         let longest = self.now.max(self.finest).min(longest);
         self.now = (2.0 * self.now).min(self.full);

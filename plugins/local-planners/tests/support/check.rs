@@ -19,7 +19,8 @@ pub struct Transfer {
     pub normal: f64,
     /// Largest motion (m) of a fingertip's centre over the object between two states.
     pub step: f64,
-    /// By how much farther (m) a contact point moved than its fingertip's centre, over the object, between two instants.
+    /// By how much farther (m) a contact point moved than its fingertip's centre, over the object, between
+    /// two instants.
     pub jump: f64,
     /// Length (m) that each contact point travelled on the object.
     pub rolled: [f64; MAX_FINGERS],

@@ -142,7 +142,8 @@ pub fn free_tips() -> HandDescription {
         finger += &format!("[[finger]]\nname = \"{name}\"\nrest = [0.0, 0.0, 0.0]\n");
         for (joint, axis) in [("x", "[1.0, 0.0, 0.0]"), ("y", "[0.0, 1.0, 0.0]"), ("z", "[0.0, 0.0, 1.0]")] {
             finger += &format!(
-                "[[finger.joint]]\nname = \"{name}-{joint}\"\nkind = \"prismatic\"\naxis = {axis}\nlower = -0.15\nupper = 0.15\n"
+                "[[finger.joint]]\nname = \"{name}-{joint}\"\nkind = \"prismatic\"\naxis = {axis}\nlower = \
+                    -0.15\nupper = 0.15\n"
             );
         }
     }

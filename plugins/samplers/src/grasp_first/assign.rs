@@ -40,7 +40,8 @@ impl<'a> Assignment<'a> {
         all
     }
 
-    /// The first assignment in which every finger may stay where it is; otherwise why the last one tried failed.
+    /// The first assignment in which every finger may stay where it is; otherwise why the last one tried
+    /// failed.
     pub fn find(mut self, context: &mut Context<'_>) -> Result<Result<Configuration, Reason>, CallError> {
         let found = self.search(FingerIndex(0), self.holding(), context)?;
         Ok(if found { Ok(self.q) } else { Err(self.last) })

@@ -1,20 +1,23 @@
 //! `sampler/grasp-first`: a stable grasp of the object first, then a pose at which the hand reaches it.
 //!
-//! 1. Contacts are drawn on the object's surface, away from sharp edges, until the grasp that they make is stable and can
-//!    be left (as the planner's predicate for grasps says): nothing of hand or pose matters yet, and a stability test costs about a
-//!    microsecond.
-//! 2. Poses are drawn as the request wants them. At each, fingers are assigned to contacts by depth-first search: which of
-//!    them a finger can reach, by its ball of reach first, then by inverse kinematics, with all checks that admit a finger.
+//! 1. Contacts are drawn on the object's surface, away from sharp edges, until the grasp that they make is
+//!    stable and can be left (as the planner's predicate for grasps says): nothing of hand or pose matters
+//!    yet, and a stability test costs about a microsecond.
+//! 2. Poses are drawn as the request wants them. At each, fingers are assigned to contacts by depth-first
+//!    search: which of them a finger can reach, by its ball of reach first, then by inverse kinematics, with
+//!    all checks that admit a finger.
 //! 3. The grasp is checked once more, since tests that know gravity depend on the pose.
 //!
-//! It turns the order of the random loop generator round, in the manner of grasp planning before motion planning. It pays where
-//! few contacts make a stable grasp (little friction, thin or faceted objects) and the hand reaches most of the object; where
-//! the hand reaches little of it, most grasps are drawn in vain. Where the pose is prescribed, each grasp has only one chance.
+//! It turns the order of the random loop generator round, in the manner of grasp planning before motion
+//! planning. It pays where few contacts make a stable grasp (little friction, thin or faceted objects) and
+//! the hand reaches most of the object; where the hand reaches little of it, most grasps are drawn in vain.
+//! Where the pose is prescribed, each grasp has only one chance.
 //!
-//! Sources: R. Diankov, "Automated construction of robotic manipulation programs", PhD thesis, CMU 2010, chapter 4 (stable grasps
-//! kept apart from the arm, then filtered by reach); J.-P. Saut, D. Sidobre, "Efficient models for grasp planning with a
-//! multi-fingered hand", Robotics and Autonomous Systems 2012 (contacts, stability, then inverse kinematics of the fingers).
-//! Departure: nothing is stored between calls, so that each sample depends on its random stream alone.
+//! Sources: R. Diankov, "Automated construction of robotic manipulation programs", PhD thesis, CMU 2010,
+//! chapter 4 (stable grasps kept apart from the arm, then filtered by reach); J.-P. Saut, D. Sidobre,
+//! "Efficient models for grasp planning with a multi-fingered hand", Robotics and Autonomous Systems 2012
+//! (contacts, stability, then inverse kinematics of the fingers). Departure: nothing is stored between calls,
+//! so that each sample depends on its random stream alone.
 
 mod assign;
 
@@ -40,7 +43,8 @@ pub struct GraspFirstSettings {
     /// Poses that are tried for each stable grasp; one where the request prescribes it.
     #[schemars(range(min = 1, max = 10_000))]
     pub poses: usize,
-    /// The fraction of poses drawn with any orientation; the others are drawn near the motion from start to goal.
+    /// The fraction of poses drawn with any orientation; the others are drawn near the motion from start to
+    /// goal.
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub anywhere: f64,
     /// How far (degrees) the latter may turn away from that motion.
@@ -76,7 +80,8 @@ impl GraspFirst {
         pose::draw(task, request, &law, &mut context.random)
     }
 
-    /// Contacts, one for each finger of `holding`, that make an admissible grasp wherever the hand is; or why not.
+    /// Contacts, one for each finger of `holding`, that make an admissible grasp wherever the hand is; or why
+    /// not.
     fn draw_grasp(
         &self,
         task: &Task<'_>,
@@ -170,8 +175,10 @@ inventory::submit! {
         slots: &[Slot::Sampler],
         summary: "a stable grasp of the object first, then a pose at which the hand reaches it",
         references: &[
-            "R. Diankov, Automated construction of robotic manipulation programs, PhD thesis, CMU 2010, chapter 4",
-            "J.-P. Saut, D. Sidobre, Efficient models for grasp planning with a multi-fingered hand, Robotics and Autonomous Systems 2012",
+            "R. Diankov, Automated construction of robotic manipulation programs, PhD thesis, CMU 2010, \
+                chapter 4",
+            "J.-P. Saut, D. Sidobre, Efficient models for grasp planning with a multi-fingered hand, \
+                Robotics and Autonomous Systems 2012",
         ],
         schema: GraspFirstSettings::schema,
         check: check_settings::<GraspFirstSettings>,

@@ -1,21 +1,25 @@
 //! `sampler/projection`: random starts brought onto the closure manifold by Newton's method.
 //!
-//! A configuration with k fingers in contact satisfies k equations: the centre of each of these fingertips lies on the offset surface, at
-//! the fingertip's radius from the object. A try draws pose and joints at random, which satisfy none of them, and brings them
-//! onto that manifold by damped Gauss-Newton steps of least norm, pose and joints together; joints are held within
-//! their limits and the pose within the request by clamping. The contacts are where the fingertips come to touch. Fingers
-//! that cannot close, or whose place is not admissible, are drawn anew and projected alone, the object at rest, before the
-//! try is given up.
+//! A configuration with k fingers in contact satisfies k equations: the centre of each of these fingertips
+//! lies on the offset surface, at the fingertip's radius from the object. A try draws pose and joints at
+//! random, which satisfy none of them, and brings them onto that manifold by damped Gauss-Newton steps of
+//! least norm, pose and joints together; joints are held within their limits and the pose within the request
+//! by clamping. The contacts are where the fingertips come to touch. Fingers that cannot close, or whose
+//! place is not admissible, are drawn anew and projected alone, the object at rest, before the try is given
+//! up.
 //!
-//! It needs no inverse kinematics, and so serves any chain; spare joints are moved like all others. It differs from the random loop
-//! generator in what it draws evenly: joints here, contacts there; parts of the surface that a finger comes to from many
-//! postures are found more often. Where the pose is prescribed only joints move.
+//! It needs no inverse kinematics, and so serves any chain; spare joints are moved like all others. It
+//! differs from the random loop generator in what it draws evenly: joints here, contacts there; parts of the
+//! surface that a finger comes to from many postures are found more often. Where the pose is prescribed only
+//! joints move.
 //!
-//! Sources: J. Yakey, S. LaValle, L. Kavraki, "Randomized path planning for linkages with closed kinematic chains", IEEE T-RA 2001
-//! (random starts brought to closure by descent); D. Berenson, S. Srinivasa, J. Kuffner, "Task space regions: a framework for
-//! pose-constrained manipulation planning", IJRR 2011 (projection by the pseudo-inverse); Z. Kingston, M. Moll, L. Kavraki,
-//! "Sampling-based methods for motion planning with constraints", Annual Review of Control, Robotics, and Autonomous Systems
-//! 2018, section 4.1 (survey). Departures: Levenberg and Marquardt's damping where a full step does not pay, and fingers repaired one by one.
+//! Sources: J. Yakey, S. LaValle, L. Kavraki, "Randomized path planning for linkages with closed kinematic
+//! chains", IEEE T-RA 2001 (random starts brought to closure by descent); D. Berenson, S. Srinivasa, J.
+//! Kuffner, "Task space regions: a framework for pose-constrained manipulation planning", IJRR 2011
+//! (projection by the pseudo-inverse); Z. Kingston, M. Moll, L. Kavraki, "Sampling-based methods for motion
+//! planning with constraints", Annual Review of Control, Robotics, and Autonomous Systems 2018, section 4.1
+//! (survey). Departures: Levenberg and Marquardt's damping where a full step does not pay, and fingers
+//! repaired one by one.
 
 mod newton;
 
@@ -111,7 +115,8 @@ impl ProjectionSampler {
         Ok(task.admissible.admit_grasp(task, &q, context)?.map_or(Ok(q), Err))
     }
 
-    /// Lets `finger` touch the resting object beside the fingers in `placed`: from its joints as they are, then from others.
+    /// Lets `finger` touch the resting object beside the fingers in `placed`: from its joints as they are,
+    /// then from others.
     fn place(
         &self,
         newton: &Newton<'_>,
@@ -143,7 +148,8 @@ impl ProjectionSampler {
         Ok(Some(last))
     }
 
-    /// Joints to start from: anywhere within the limits, or near those of the configuration that the request names.
+    /// Joints to start from: anywhere within the limits, or near those of the configuration that the request
+    /// names.
     fn draw(
         &self,
         task: &Task<'_>,
@@ -211,9 +217,12 @@ inventory::submit! {
         slots: &[Slot::Sampler],
         summary: "random pose and joints, brought onto the closure manifold by Newton's method",
         references: &[
-            "J. Yakey, S. LaValle, L. Kavraki, Randomized path planning for linkages with closed kinematic chains, IEEE T-RA 2001",
-            "D. Berenson, S. Srinivasa, J. Kuffner, Task space regions: a framework for pose-constrained manipulation planning, IJRR 2011",
-            "Z. Kingston, M. Moll, L. Kavraki, Sampling-based methods for motion planning with constraints, Annual Review of Control, Robotics, and Autonomous Systems 2018",
+            "J. Yakey, S. LaValle, L. Kavraki, Randomized path planning for linkages with closed kinematic \
+                chains, IEEE T-RA 2001",
+            "D. Berenson, S. Srinivasa, J. Kuffner, Task space regions: a framework for pose-constrained \
+                manipulation planning, IJRR 2011",
+            "Z. Kingston, M. Moll, L. Kavraki, Sampling-based methods for motion planning with constraints, \
+                Annual Review of Control, Robotics, and Autonomous Systems 2018",
         ],
         schema: ProjectionSettings::schema,
         check: check_settings::<ProjectionSettings>,

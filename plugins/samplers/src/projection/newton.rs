@@ -1,7 +1,8 @@
 //! Newton's method on the closure equations: every fingertip's centre at its radius from the object.
 //!
-//! J. Yakey, S. LaValle, L. Kavraki, "Randomized path planning for linkages with closed kinematic chains", IEEE T-RA 2001; the step of least norm as in
-//! D. Berenson, S. Srinivasa, J. Kuffner, "Task space regions", IJRR 2011.
+//! J. Yakey, S. LaValle, L. Kavraki, "Randomized path planning for linkages with closed kinematic chains",
+//! IEEE T-RA 2001; the step of least norm as in D. Berenson, S. Srinivasa, J. Kuffner, "Task space regions",
+//! IJRR 2011.
 
 use crate::pose::Region;
 use nalgebra::{SMatrix, SVector, Vector6};
@@ -61,7 +62,8 @@ pub(super) struct Newton<'a> {
 impl Newton<'_> {
     /// Brings the configuration towards closure; some fingers may stay open.
     ///
-    /// Damped Gauss-Newton: the step of least norm with J Jᵀ + λ, λ zero until a step does not make the residual smaller.
+    /// Damped Gauss-Newton: the step of least norm with J Jᵀ + λ, λ zero until a step does not make the
+    /// residual smaller.
     pub fn close(&self, q: &mut Configuration, unknowns: Unknowns) {
         let mut here = self.linearise(q, unknowns);
         let mut damping = 0.0;
@@ -205,7 +207,8 @@ mod tests {
                     };
                     let slope = (residual(&moved(1.0)) - residual(&moved(-1.0))) / (2.0 * step);
                     let off = (slope - at.by_pose.column(k)).amax();
-                    // Where the closest point changes from facet to facet within the step the slope is neither's.
+                    // Where the closest point changes from facet to facet within the step the slope is
+                    // neither's.
                     compared += usize::from(off < 1e-3);
                 }
                 let (finger, kind) = (FingerIndex(2), task.hand.finger(FingerIndex(2)).joints[1].kind);
@@ -223,7 +226,8 @@ mod tests {
 
     #[test]
     fn free_fingertips_come_straight_to_a_ball() {
-        // A slide has no curvature and the offset of a ball is a ball: one finger needs few steps, along the line to the centre.
+        // A slide has no curvature and the offset of a ball is a ball: one finger needs few steps, along the
+        // line to the centre.
         let bench = Bench::free_sphere();
         let task = bench.task();
         let newton = newton(&task, Region::Point);

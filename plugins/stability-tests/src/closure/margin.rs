@@ -1,4 +1,5 @@
-//! A bracket of the margin Q1: a certified lower bound from the analytic centre, an upper bound from far points of Ω.
+//! A bracket of the margin Q1: a certified lower bound from the analytic centre, an upper bound from far
+//! points of Ω.
 
 use super::newton::Search;
 use super::symmetric::Symmetric6;
@@ -50,7 +51,8 @@ impl Frame {
     }
 }
 
-/// A certified lower bound of Q1 in `frame` for a grasp that is force closure, looser than that of [`glance`] and a few times cheaper.
+/// A certified lower bound of Q1 in `frame` for a grasp that is force closure, looser than that of [`glance`]
+/// and a few times cheaper.
 pub(crate) fn floor(search: &Search<'_>, frame: &Frame) -> f64 {
     let Some(centre) = Centre::find(search, ROUGHLY) else { return 0.0 };
     let factor = centre.H.factor(0.0);
@@ -63,7 +65,8 @@ pub(crate) fn floor(search: &Search<'_>, frame: &Frame) -> f64 {
     1.0 / (frame.norm(&centre.w) + centre.radius(search) * longest)
 }
 
-/// Quick bounds of Q1 in `frame` for a grasp that is force closure: the certified one from the centre, and the depth along the ellipsoid's axes.
+/// Quick bounds of Q1 in `frame` for a grasp that is force closure: the certified one from the centre, and
+/// the depth along the ellipsoid's axes.
 pub(crate) fn glance(search: &Search<'_>, frame: &Frame) -> (f64, f64) {
     let Some(centre) = Centre::find(search, EXACTLY) else { return (0.0, f64::INFINITY) };
     let inverse = centre.H.full().cholesky().map(|factor| factor.inverse());
@@ -124,8 +127,9 @@ impl Centre {
 
     /// How many times the ellipsoid of H around w covers Ω.
     ///
-    /// Along any line the 2n reciprocal roots λ of Π q_i have Σ λ² = 1 and |Σ λ| ≤ the Newton decrement δ, so one root is at most 1/x away
-    /// with ν(ν-1)x² + 2(ν-1)δx = 1 - δ², ν = 2n: sqrt(2n(2n-1)) at the centre itself.
+    /// Along any line the 2n reciprocal roots λ of Π q_i have Σ λ² = 1 and |Σ λ| ≤ the Newton decrement δ, so
+    /// one root is at most 1/x away with ν(ν-1)x² + 2(ν-1)δx = 1 - δ², ν = 2n: sqrt(2n(2n-1)) at the centre
+    /// itself.
     fn radius(&self, search: &Search<'_>) -> f64 {
         let nu = 2.0 * search.body.grasp.contacts().len() as f64;
         let (half, delta) = ((nu - 1.0) * self.decrement, self.decrement);
@@ -152,7 +156,8 @@ fn ascend(search: &Search<'_>, frame: &Frame, centre: &Twist, axis: Vector6<f64>
     best
 }
 
-/// The point of Ω that is farthest along `covector`, from inside, to a relative 1e-8: path following with the same barrier.
+/// The point of Ω that is farthest along `covector`, from inside, to a relative 1e-8: path following with the
+/// same barrier.
 fn farthest(search: &Search<'_>, centre: &Twist, covector: &Twist) -> Twist {
     let gap = 2.0 * search.body.grasp.contacts().len() as f64;
     let mut w = *centre;

@@ -1,4 +1,5 @@
-//! Newton's method to the analytic centre of the polar body, stopped as soon as a proof either way is at hand.
+//! Newton's method to the analytic centre of the polar body, stopped as soon as a proof either way is at
+//! hand.
 
 use super::polar::{Local, Locals, PolarBody};
 use super::symmetric::{Factor, Symmetric6};
@@ -9,19 +10,23 @@ use regrasp_api::{MAX_FINGERS, Vec3};
 const MAX_STEPS: usize = 100;
 /// Smallest slack of an accepted force relative to the largest number that was cancelled to find it.
 const SLACK: f64 = 1e-9;
-/// A hint's claim counts only where it holds with this margin, so that a search without the hint must come to the same verdict.
+/// A hint's claim counts only where it holds with this margin, so that a search without the hint must come to
+/// the same verdict.
 const COMFORT: f64 = 1e-3;
 
-/// Smallest pivot of the scaled grasp map's square at which its rank is beyond doubt, and so is a solution to rounding.
+/// Smallest pivot of the scaled grasp map's square at which its rank is beyond doubt, and so is a solution to
+/// rounding.
 const SOUND: f64 = 1e-5;
-/// Distance from w = 0 at which a separating twist of the second kind ([`Search::rounded`]) is first looked for ...
+/// Distance from w = 0 at which a separating twist of the second kind ([`Search::rounded`]) is first looked
+/// for ...
 const FIRST_LOOK: f64 = 10.0;
 /// ... and by how much farther for another look.
 const LOOK_AGAIN: f64 = 5.0;
-/// Contacts that feel a far point w of Ω by at most this times sqrt |w| are taken to be those that hold it: what they feel stays
-/// bounded while w, and what the others feel, grows.
+/// Contacts that feel a far point w of Ω by at most this times sqrt |w| are taken to be those that hold it:
+/// what they feel stays bounded while w, and what the others feel, grows.
 const AT_REST: f64 = 2.0;
-/// How many times farther than 1/τ the search for a twist goes on, for the proof's sake; closure is ruled out there.
+/// How many times farther than 1/τ the search for a twist goes on, for the proof's sake; closure is ruled out
+/// there.
 const BEYOND: f64 = 1e3;
 /// What is added to a singular matrix so that solving with it projects onto its null space.
 const PROJECTION: f64 = 1e-13;
@@ -29,7 +34,8 @@ const PROJECTION: f64 = 1e-13;
 /// What a search found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Outcome {
-    /// Force closure: Newton's multipliers at this point of Ω are an internal force strictly inside every cone.
+    /// Force closure: Newton's multipliers at this point of Ω are an internal force strictly inside every
+    /// cone.
     Closed(Twist),
     /// Not force closure: no contact resists this twist.
     Separated(Twist),
@@ -37,7 +43,8 @@ pub(crate) enum Outcome {
     Undecided(Twist),
 }
 
-/// The internal force that Newton's multipliers give, in scaled coordinates: a force and a torsional torque a contact.
+/// The internal force that Newton's multipliers give, in scaled coordinates: a force and a torsional torque a
+/// contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Forces {
     /// Force on the object and torque about the inward normal over the length.
@@ -158,10 +165,12 @@ impl<'a> Search<'a> {
         self.rounded(&w).map_or(Outcome::Undecided(w), Outcome::Separated)
     }
 
-    /// The twist near the far point `w` that leaves the contacts that hold it altogether at rest, if it separates.
+    /// The twist near the far point `w` that leaves the contacts that hold it altogether at rest, if it
+    /// separates.
     ///
-    /// Where some contacts can squeeze and no force at the others helps (an antipodal pair with the rest on one side), the only separating
-    /// twists are those that the squeezing contacts do not feel, a face of no volume that Newton's method nears without reaching it.
+    /// Where some contacts can squeeze and no force at the others helps (an antipodal pair with the rest on
+    /// one side), the only separating twists are those that the squeezing contacts do not feel, a face of no
+    /// volume that Newton's method nears without reaching it.
     #[cold]
     fn rounded(&self, w: &Twist) -> Option<Twist> {
         let norm = w.norm();
@@ -178,7 +187,8 @@ impl<'a> Search<'a> {
 
     /// The unit twist that the contacts feel least, where that is so little that the margin is at most τ.
     ///
-    /// A pivot alone does not tell: where the factors grow it is rounding. Eigenvalues do, and few grasps come here.
+    /// A pivot alone does not tell: where the factors grow it is rounding. Eigenvalues do, and few grasps
+    /// come here.
     #[cold]
     fn unfelt_direction(&self, M: &Symmetric6) -> Option<Twist> {
         let M = M.full();
@@ -228,7 +238,8 @@ impl<'a> Search<'a> {
 
     /// Whether the multipliers of a step prove closure.
     ///
-    /// The margin: pushing every force by at most slack/√2 keeps it in its cone, so Q1 ≥ slack σ_min(G) / (√2 (1 + 1/√2) Σ f_n).
+    /// The margin: pushing every force by at most slack/√2 keeps it in its cone, so Q1 ≥ slack σ_min(G) / (√2
+    /// (1 + 1/√2) Σ f_n).
     #[inline]
     fn forces_hold(&self, here: &Locals, along: &Locals, grasp_map: &Factor) -> bool {
         self.forces_hold_at(here, along, || grasp_map.trace_of_inverse(), 0.0)
@@ -272,8 +283,9 @@ impl<'a> Search<'a> {
 
     /// Whether the hint `w`, from a grasp nearby, proves closure with a margin that any search would see.
     ///
-    /// The grasp map's square M is not needed: every contact's part of the Hessian H is at most 2 (s0 + |u|)²/q² times its part of M, u its
-    /// tangential and torsional part, so tr M⁻¹ is at most the largest of those times tr H⁻¹.
+    /// The grasp map's square M is not needed: every contact's part of the Hessian H is at most 2 (s0 +
+    /// |u|)²/q² times its part of M, u its tangential and torsional part, so tr M⁻¹ is at most the largest of
+    /// those times tr H⁻¹.
     pub fn closed_from(&self, w: &Twist) -> bool {
         let gauge = self.body.gauge(w);
         if gauge.is_nan() || gauge <= 0.0 {

@@ -1,7 +1,8 @@
 //! The polar body Ω = {w : h_i(-w) ≤ 1 for all i} and its barrier -Σ log q_i.
 //!
-//! With v = a + b×r, s0 = 1 + v_n and β = b·n the body is s0 ≥ sqrt(μ²|v_t|² + γ²β²) at every contact, and q = s0² - μ²|v_t|² - γ²β²
-//! is quadratic along every line. Ω is bounded exactly where the grasp is force closure.
+//! With v = a + b×r, s0 = 1 + v_n and β = b·n the body is s0 ≥ sqrt(μ²|v_t|² + γ²β²) at every contact, and q
+//! = s0² - μ²|v_t|² - γ²β² is quadratic along every line. Ω is bounded exactly where the grasp is force
+//! closure.
 
 use super::symmetric::Symmetric6;
 use crate::contacts::{ScaledContact, ScaledGrasp, Twist};
@@ -41,7 +42,8 @@ impl Local {
 }
 
 impl Local {
-    /// The largest eigenvalue of the barrier's Hessian at a point, over (v_n, μ v_t, γ β): 2/(s0 - |u|)² = 2 (s0 + |u|)²/q², at most 8 s0²/q².
+    /// The largest eigenvalue of the barrier's Hessian at a point, over (v_n, μ v_t, γ β): 2/(s0 - |u|)² = 2
+    /// (s0 + |u|)²/q², at most 8 s0²/q².
     #[inline]
     pub fn stiffness(&self) -> f64 {
         8.0 * (self.s0 / self.q).powi(2)
@@ -82,7 +84,8 @@ impl PolarBody<'_> {
         locals
     }
 
-    /// Hessian H of the barrier and *minus* its gradient g at the point whose locals are `here`; Newton's step solves H d = g.
+    /// Hessian H of the barrier and *minus* its gradient g at the point whose locals are `here`; Newton's
+    /// step solves H d = g.
     #[inline]
     pub fn newton_system(&self, here: &Locals) -> (Symmetric6, [f64; 6]) {
         let mut H = Symmetric6::zeros();
@@ -130,7 +133,8 @@ impl PolarBody<'_> {
         }
     }
 
-    /// The part of M that belongs to the contacts which feel at most `bound` of `w`: |(v_n, μ v_t, γ β)| ≤ bound.
+    /// The part of M that belongs to the contacts which feel at most `bound` of `w`: |(v_n, μ v_t, γ β)| ≤
+    /// bound.
     pub fn felt_square(&self, w: &Twist, bound: f64) -> Symmetric6 {
         let mut M = Symmetric6::zeros();
         for contact in self.grasp.contacts() {
@@ -162,7 +166,8 @@ impl PolarBody<'_> {
 
     /// The step t > 0 that maximises `slope t + Σ log q_i(w + t d)`; `None` where the line never leaves Ω.
     ///
-    /// Each q_i is quadratic in t, so no evaluation costs more than a few products. Newton in one dimension, kept inside the body.
+    /// Each q_i is quadratic in t, so no evaluation costs more than a few products. Newton in one dimension,
+    /// kept inside the body.
     #[inline]
     pub fn best_step(&self, here: &Locals, along: &Locals, slope: f64) -> Option<f64> {
         let count = self.grasp.contacts().len();
@@ -194,7 +199,8 @@ impl PolarBody<'_> {
     }
 }
 
-/// Steps of the line search: near a face of Ω each halves the distance to it, and more precision is not needed.
+/// Steps of the line search: near a face of Ω each halves the distance to it, and more precision is not
+/// needed.
 const LINE_STEPS: usize = 8;
 
 /// (n, r×n): the wrench of a unit normal force.

@@ -69,7 +69,8 @@ impl Symmetric6 {
         nalgebra::Matrix6::from_fn(|i, j| self.lower[i.max(j)][i.min(j)])
     }
 
-    /// The LDLᵀ factors of a positive semidefinite matrix; pivots at or below `floor` are raised to it and remembered.
+    /// The LDLᵀ factors of a positive semidefinite matrix; pivots at or below `floor` are raised to it and
+    /// remembered.
     #[inline]
     pub fn factor(&self, floor: f64) -> Factor {
         let mut l = self.lower;
@@ -127,7 +128,8 @@ impl Factor {
         x
     }
 
-    /// A twist u with largest coefficient in the weak pivot's place and uᵀHu = that pivot, if there is a weak pivot.
+    /// A twist u with largest coefficient in the weak pivot's place and uᵀHu = that pivot, if there is a weak
+    /// pivot.
     pub fn weak_direction(&self) -> Option<Twist> {
         let weak = self.weak?;
         let mut u = [0.0; 6];

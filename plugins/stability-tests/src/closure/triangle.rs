@@ -1,9 +1,10 @@
 //! Three point contacts with friction in closed form.
 //!
-//! Three forces in equilibrium at three points lie in the points' plane, along the triangle's edges: f0 = a01 u01 + a02 u02,
-//! f1 = -a01 u01 + a12 u12, f2 = -a02 u02 - a12 u12. The plane cuts each cone in an angle, so closure is a homogeneous system of six
-//! strict inequalities in (a01, a02, a12). After Nguyen, "Constructing force-closure grasps", IJRR 1988, and Li, Liu, Cai, "On computing
-//! three-finger force-closure grasps of 2-D and 3-D objects", T-RA 2003; the enumeration of rays is ours.
+//! Three forces in equilibrium at three points lie in the points' plane, along the triangle's edges: f0 = a01
+//! u01 + a02 u02, f1 = -a01 u01 + a12 u12, f2 = -a02 u02 - a12 u12. The plane cuts each cone in an angle, so
+//! closure is a homogeneous system of six strict inequalities in (a01, a02, a12). After Nguyen, "Constructing
+//! force-closure grasps", IJRR 1988, and Li, Liu, Cai, "On computing three-finger force-closure grasps of 2-D
+//! and 3-D objects", T-RA 2003; the enumeration of rays is ours.
 
 use crate::contacts::ScaledContact;
 use regrasp_api::Vec3;
@@ -13,12 +14,14 @@ const COMFORT: f64 = 1e-3;
 /// Conditions that fail by less than this are left to it too.
 const CLEAR: f64 = 1e-6;
 
-/// Triangles farther from the origin than this times their size are left to the general test, which centres them.
+/// Triangles farther from the origin than this times their size are left to the general test, which centres
+/// them.
 const FAR: f64 = 1e6;
 /// Least area (twice) of a triangle over the square of its longest side; a regular one has 0.87.
 const SHAPELY: f64 = 0.005;
 
-/// Whether three point contacts with friction are force closure; `None` near the boundary and for other grasps.
+/// Whether three point contacts with friction are force closure; `None` near the boundary and for other
+/// grasps.
 ///
 /// The contacts may be given in any unit of length and about any point not far away.
 pub(crate) fn three_points(contacts: &[ScaledContact; 3]) -> Option<bool> {
@@ -71,7 +74,8 @@ fn edges(contact: &ScaledContact, m: &Vec3) -> Option<Section> {
     if excess < COMFORT {
         return (excess < -CLEAR).then_some(Section::Empty);
     }
-    // Half-angle φ of the section: cos φ = cos θ / |n_p|, so tan φ = sqrt(excess). The conditions' vectors are at φ + 90° to the axis.
+    // Half-angle φ of the section: cos φ = cos θ / |n_p|, so tan φ = sqrt(excess). The conditions' vectors
+    // are at φ + 90° to the axis.
     let sin = (excess / (1.0 + excess)).sqrt();
     let cos = (1.0 / (1.0 + excess)).sqrt();
     let axis = n_p / square.sqrt();
@@ -91,16 +95,19 @@ fn in_edges(vertex: usize, first: f64, second: f64) -> Vec3 {
 
 /// Whether some a has w·a > 0 for all six w; `None` where it is too close to say.
 ///
-/// The cone {w·a ≥ 0} is spanned by its extreme rays, each the cross product of two w; the sum of those is inside if anything is.
+/// The cone {w·a ≥ 0} is spanned by its extreme rays, each the cross product of two w; the sum of those is
+/// inside if anything is.
 fn feasible(w: &[Vec3; 6]) -> Option<bool> {
     let mut rays = Rays { inside: Vec3::zeros(), clear: true };
-    // The pair at vertex k leaves out coordinate 2 - k, so every product has zeros that need no multiplication.
+    // The pair at vertex k leaves out coordinate 2 - k, so every product has zeros that need no
+    // multiplication.
     for vertex in 0..3 {
         let (i, j) = (2 * vertex, 2 * vertex + 1);
         let mut ray = Vec3::zeros();
         let (a, b) = COORDINATES[vertex];
         let size = w[i][a] * w[j][b] - w[i][b] * w[j][a];
-        // The sign of e_a × e_b is that of the missing axis, but for vertex 1, where (x, z) turns the other way round.
+        // The sign of e_a × e_b is that of the missing axis, but for vertex 1, where (x, z) turns the other
+        // way round.
         ray[2 - vertex] = if vertex == 1 { -size } else { size };
         rays.take(w, ray, i, j);
     }

@@ -1,8 +1,10 @@
-//! How deep the origin lies in the convex hull of a set in R⁶ that is known by its support function: an expanding polytope.
+//! How deep the origin lies in the convex hull of a set in R⁶ that is known by its support function: an
+//! expanding polytope.
 //!
-//! After van den Bergen, "Proximity queries and penetration depth computation on 3D game objects", GDC 2001, in six dimensions: the facet of an
-//! inner polytope that is nearest to the origin is pushed out to the set's support along its normal, by the beneath-beyond step of Barber,
-//! Dobkin, Huhdanpaa, "The Quickhull algorithm for convex hulls", TOMS 1996. At every moment the nearest facet bounds the depth from below and
+//! After van den Bergen, "Proximity queries and penetration depth computation on 3D game objects", GDC 2001,
+//! in six dimensions: the facet of an inner polytope that is nearest to the origin is pushed out to the set's
+//! support along its normal, by the beneath-beyond step of Barber, Dobkin, Huhdanpaa, "The Quickhull
+//! algorithm for convex hulls", TOMS 1996. At every moment the nearest facet bounds the depth from below and
 //! the supports seen so far bound it from above.
 
 mod polytope;
@@ -46,7 +48,8 @@ impl Until {
     }
 }
 
-/// Brackets the depth of the origin in the hull of the set whose farthest point in direction `w` is `support(w)`.
+/// Brackets the depth of the origin in the hull of the set whose farthest point in direction `w` is
+/// `support(w)`.
 ///
 /// Not closed (the origin outside or on the boundary) gives `upper ≤ 0` up to rounding.
 pub(crate) fn depth(support: impl Fn(&Point) -> Point, until: Until) -> Depth {

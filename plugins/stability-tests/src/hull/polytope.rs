@@ -84,7 +84,8 @@ impl Polytope {
         self.living
     }
 
-    /// The facet nearest to the origin, counted below 0 where the origin is beyond it, with its outward unit normal and offset.
+    /// The facet nearest to the origin, counted below 0 where the origin is beyond it, with its outward unit
+    /// normal and offset.
     pub fn nearest(&mut self) -> Option<(u32, Point, f64)> {
         loop {
             let top = self.queue.peek()?;
@@ -96,7 +97,8 @@ impl Polytope {
         }
     }
 
-    /// Takes in a point beyond `facet`; `false` where rounding leaves no clean horizon, and then nothing more may be asked.
+    /// Takes in a point beyond `facet`; `false` where rounding leaves no clean horizon, and then nothing more
+    /// may be asked.
     pub fn push_out(&mut self, facet: u32, point: Point) -> bool {
         let Some(horizon) = self.horizon(facet, &point) else { return false };
         self.points.push(point);

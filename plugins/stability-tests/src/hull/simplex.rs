@@ -5,7 +5,8 @@ use super::{Point, dot};
 /// Points nearer to the others' hyperplane than this make no simplex.
 const FLAT: f64 = 1e-7;
 
-/// Support points in turn, each as far as the set goes from the plane through those before; `None` where the set is flat.
+/// Support points in turn, each as far as the set goes from the plane through those before; `None` where the
+/// set is flat.
 pub(super) fn first_simplex(support: &impl Fn(&Point) -> Point) -> Option<[Point; 7]> {
     let mut corners = [[0.0; 6]; 7];
     corners[0] = support(&[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
@@ -18,7 +19,8 @@ pub(super) fn first_simplex(support: &impl Fn(&Point) -> Point) -> Option<[Point
     Some(corners)
 }
 
-/// The support point farthest from the plane through `origin` along `basis`, looking both ways along what the basis leaves of each axis.
+/// The support point farthest from the plane through `origin` along `basis`, looking both ways along what the
+/// basis leaves of each axis.
 fn farthest_off(
     support: &impl Fn(&Point) -> Point,
     origin: &Point,

@@ -1,8 +1,9 @@
 //! Lower bounds of the way that is left to the target.
 //!
-//! A path on the surface stays outside of every ball inside the solid, so it is at least as long as the shortest way around
-//! such a ball: straight to the ball, along a great circle, straight to the target. On round objects this is almost exact,
-//! where the straight distance alone would let the search spread over half of the surface.
+//! A path on the surface stays outside of every ball inside the solid, so it is at least as long as the
+//! shortest way around such a ball: straight to the ball, along a great circle, straight to the target. On
+//! round objects this is almost exact, where the straight distance alone would let the search spread over
+//! half of the surface.
 
 use crate::closest::ClosestPoints;
 use crate::polyhedron::{HalfEdge, Planar, Polyhedron, planar_norm};
@@ -21,10 +22,11 @@ const FARTHEST: f64 = 3.0;
 /// The most (rad) by which [`angle_below`] is too small.
 const ANGLE_ERROR: f64 = 5e-5;
 
-/// The angle in [0, π) of a point with y > 0 about the origin, rounded down (rad): a tenth of the cost of `atan2`.
+/// The angle in [0, π) of a point with y > 0 about the origin, rounded down (rad): a tenth of the cost of
+/// `atan2`.
 ///
-/// Twice the arc tangent of y / (1 + x), by the polynomial of Abramowitz & Stegun, "Handbook of Mathematical Functions", 1964,
-/// 4.4.47, whose error is at most 1e-5.
+/// Twice the arc tangent of y / (1 + x), by the polynomial of Abramowitz & Stegun, "Handbook of Mathematical
+/// Functions", 1964, 4.4.47, whose error is at most 1e-5.
 fn angle_below(y: f64, x: f64) -> f64 {
     let whole = 1.0 + x;
     let (t, beyond) = if y <= whole { (y / whole, false) } else { (whole / y, true) };
@@ -60,8 +62,8 @@ pub(super) fn inscribed_balls(polyhedron: &Polyhedron, closest: &ClosestPoints) 
     balls
 }
 
-/// The largest ball that touches a facet's middle from inside (shrinking ball: Ma, Bae & Choi, "3D medial axis point
-/// approximation using nearest neighbors and the normal field", The Visual Computer 2012).
+/// The largest ball that touches a facet's middle from inside (shrinking ball: Ma, Bae & Choi, "3D medial
+/// axis point approximation using nearest neighbors and the normal field", The Visual Computer 2012).
 fn ball_below(polyhedron: &Polyhedron, closest: &ClosestPoints, facet: u32) -> Ball {
     let n = polyhedron.mesh.normal(facet);
     let p = polyhedron.mesh.corners(facet).iter().sum::<Vec3>() / 3.0;
@@ -110,7 +112,8 @@ impl Detour {
         Self { ball, u_BT: to / to.norm(), tangent, spanned: [ball.radius / distance, tangent / distance] }
     }
 
-    /// The way around the ball; `None` where the straight way misses the ball, or the ball's far side is reached.
+    /// The way around the ball; `None` where the straight way misses the ball, or the ball's far side is
+    /// reached.
     fn way(&self, p_OP: &Vec3) -> Option<Way> {
         let from = p_OP - self.ball.p_OB;
         let radius = self.ball.radius;
@@ -163,11 +166,12 @@ impl LowerBound {
         self.detour.and_then(|detour| detour.way(p_OP)).map_or(straight, |way| way.length.max(straight))
     }
 
-    /// Of paths of length `so_far` (m) to an unfolded source, from there straight through the part of an edge between `ends`,
-    /// and on to the target; `guess` (m along the edge) is a point of that part.
+    /// Of paths of length `so_far` (m) to an unfolded source, from there straight through the part of an edge
+    /// between `ends`, and on to the target; `guess` (m along the edge) is a point of that part.
     ///
-    /// The sum of the ways from the source and to the target is convex along the edge, so its tangent at one point bounds
-    /// it: across the way the fronts of both bend by 1/d and, behind an arc φ of radius ρ, by at least cot(φ)/ρ.
+    /// The sum of the ways from the source and to the target is convex along the edge, so its tangent at one
+    /// point bounds it: across the way the fronts of both bend by 1/d and, behind an arc φ of radius ρ, by at
+    /// least cot(φ)/ρ.
     pub fn through(&self, frame: &HalfEdge, source: &Planar, ends: [f64; 2], so_far: f64, guess: f64) -> f64 {
         let Some(detour) = &self.detour else { return 0.0 };
         let Some(way) = detour.way(&frame.at(guess)) else { return 0.0 };
@@ -175,7 +179,8 @@ impl LowerBound {
         let slope = (guess - source[0]) / here - frame.along_O.dot(&way.out_O);
         let descent = if slope > 0.0 { slope * (guess - ends[0]) } else { -slope * (ends[1] - guess) };
         let width = ends[1] - ends[0];
-        // Behind more than a quarter turn the front closes again: bounded over the width, where 1/d does not outweigh it.
+        // Behind more than a quarter turn the front closes again: bounded over the width, where 1/d does not
+        // outweigh it.
         let arc = way.arc + ANGLE_ERROR + width / detour.ball.radius;
         let closing = if arc > 1.5 {
             let bend = -1.0 / (arc.min(3.1).tan() * detour.ball.radius);

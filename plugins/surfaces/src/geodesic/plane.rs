@@ -2,8 +2,8 @@
 
 use crate::polyhedron::{HalfEdge, Planar, planar_norm};
 
-/// The part of the edge opposite to a frame's origin between two directions (rad) from the frame's edge, in metres from
-/// the frame's head.
+/// The part of the edge opposite to a frame's origin between two directions (rad) from the frame's edge, in
+/// metres from the frame's head.
 pub(super) fn part_of_opposite(frame: &HalfEdge, low: f64, high: f64) -> std::ops::RangeInclusive<f64> {
     let [ax, ay] = frame.apex;
     let (dx, dy) = (ax - frame.length, ay);

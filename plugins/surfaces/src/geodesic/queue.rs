@@ -18,8 +18,8 @@ struct Item {
     below: u32,
 }
 
-/// Buckets of similar keys, each a stack. A search is right in any order, and quick in nearly the right one: buckets cost a
-/// tenth of a heap.
+/// Buckets of similar keys, each a stack. A search is right in any order, and quick in nearly the right one:
+/// buckets cost a tenth of a heap.
 #[derive(Debug, Default)]
 pub(super) struct Queue {
     items: Vec<Item>,

@@ -1,11 +1,12 @@
 //! Exact shortest paths: windows of straight rays, unfolded facet by facet and led towards the target.
 //!
-//! A window is the part of an edge that straight lines from one source reach through one strip of unfolded facets
-//! (Mitchell, Mount & Papadimitriou, "The discrete geodesic problem", SIAM J. Comput. 1987; Chen & Han, "Shortest paths
-//! on a polyhedron", SoCG 1990). Windows leave a queue as in Xin & Wang, "Improving Chen and Han's algorithm on
-//! the discrete geodesic problem", ACM TOG 2009, with two departures for paths between two points: the key is the length
-//! so far plus a lower bound of the rest (A*), and a window that cannot shorten the best path by more than the relative
-//! tolerance is dropped. Shortest paths bend at saddle vertices only; those become sources of the region behind them.
+//! A window is the part of an edge that straight lines from one source reach through one strip of unfolded
+//! facets (Mitchell, Mount & Papadimitriou, "The discrete geodesic problem", SIAM J. Comput. 1987; Chen &
+//! Han, "Shortest paths on a polyhedron", SoCG 1990). Windows leave a queue as in Xin & Wang, "Improving Chen
+//! and Han's algorithm on the discrete geodesic problem", ACM TOG 2009, with two departures for paths between
+//! two points: the key is the length so far plus a lower bound of the rest (A*), and a window that cannot
+//! shorten the best path by more than the relative tolerance is dropped. Shortest paths bend at saddle
+//! vertices only; those become sources of the region behind them.
 
 use super::bound::LowerBound;
 use super::plane::{cross, exit, part_of_opposite, rotate};
@@ -58,7 +59,8 @@ impl<'a> Search<'a> {
         Self { polyhedron, scratch, bound, p_OT: target.contact.p_OC, tolerance, limit, best: None }
     }
 
-    /// The last piece of the shortest path from `start` if it is shorter than the known one by more than the tolerance.
+    /// The last piece of the shortest path from `start` if it is shorter than the known one by more than the
+    /// tolerance.
     pub fn run(mut self, start: &Spot, context: &Context<'_>) -> Result<Option<Arrival>, CallError> {
         let least = self.bound.of_point(&start.contact.p_OC).max(FINEST * self.polyhedron.radius);
         self.scratch.queue.restart(least);
@@ -106,8 +108,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Opens the window of a source through an edge of a facet that holds the source; `part` limits it, from the edge's
-    /// first vertex (m).
+    /// Opens the window of a source through an edge of a facet that holds the source; `part` limits it, from
+    /// the edge's first vertex (m).
     fn open(&mut self, edge: u32, source: u32, part: std::ops::RangeInclusive<f64>) {
         let Source { p_OS, length, .. } = self.scratch.sources[source as usize];
         let twin = self.polyhedron.half_edges[edge as usize].twin;
@@ -131,7 +133,8 @@ impl<'a> Search<'a> {
         let facet = window.half_edge / 3;
         let target = frame.unfold(&self.p_OT);
         let crossing = cross(&window.source, &target);
-        // A window round a single ray past a saddle may have its ends swapped by rounding, which `clamp` would refuse.
+        // A window round a single ray past a saddle may have its ends swapped by rounding, which `clamp`
+        // would refuse.
         let clamped = crossing.max(window.ends[0]).min(window.ends[1]);
         let straight = window.so_far
             + planar_norm(clamped - window.source[0], window.source[1])
@@ -162,8 +165,8 @@ impl<'a> Search<'a> {
         (self.scratch.windows.len() - 1) as u32
     }
 
-    /// Whether a known path to an end of the edge, continued along the edge, beats the window everywhere (Xin & Wang 2009,
-    /// section 3.2).
+    /// Whether a known path to an end of the edge, continued along the edge, beats the window everywhere (Xin
+    /// & Wang 2009, section 3.2).
     fn is_dominated(&self, frame: &HalfEdge, window: &Window) -> bool {
         let [b0, b1] = window.ends;
         let [x, y] = window.source;

@@ -6,7 +6,8 @@ use crate::lift::Leg;
 use crate::polyhedron::{Planar, Polyhedron, next, previous};
 use regrasp_api::Vec3;
 
-/// Writes the path's points from start to target, the target excluded, each with the facet of the piece that follows.
+/// Writes the path's points from start to target, the target excluded, each with the facet of the piece that
+/// follows.
 pub(super) fn trace(
     polyhedron: &Polyhedron,
     scratch: &Scratch,
@@ -56,7 +57,8 @@ fn strip(polyhedron: &Polyhedron, scratch: &Scratch, last: u32, p_OT: &Vec3, leg
     }
 }
 
-/// The point `x` along a child's half-edge, in the frame of the half-edge through which its facet was entered.
+/// The point `x` along a child's half-edge, in the frame of the half-edge through which its facet was
+/// entered.
 fn in_parent(polyhedron: &Polyhedron, parent: u32, child: u32, x: f64) -> Planar {
     let frame = &polyhedron.half_edges[parent as usize];
     let edge = polyhedron.half_edges[child as usize].twin;

@@ -1,8 +1,10 @@
-//! The intrinsic Delaunay triangulation: other straight edges over the same facets, between the same vertices.
+//! The intrinsic Delaunay triangulation: other straight edges over the same facets, between the same
+//! vertices.
 //!
-//! The Laplacian of a mesh with obtuse or thin facets is a bad one. Edges are flipped inside the surface, which changes no
-//! distance, until the angles opposite to each edge add up to π at most; then all its weights are positive (Bobenko & Springborn, "A
-//! discrete Laplace-Beltrami operator for simplicial surfaces", Discrete Comput. Geom. 38, 2007).
+//! The Laplacian of a mesh with obtuse or thin facets is a bad one. Edges are flipped inside the surface,
+//! which changes no distance, until the angles opposite to each edge add up to π at most; then all its
+//! weights are positive (Bobenko & Springborn, "A discrete Laplace-Beltrami operator for simplicial
+//! surfaces", Discrete Comput. Geom. 38, 2007).
 
 use crate::polyhedron::{Planar, Polyhedron, next, previous};
 

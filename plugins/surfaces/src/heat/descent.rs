@@ -15,7 +15,8 @@ struct Stand {
     vertex: Option<u32>,
 }
 
-/// Follows the gradient of distances on the fine mesh, and notes the edges of the coarse mesh that it crosses.
+/// Follows the gradient of distances on the fine mesh, and notes the edges of the coarse mesh that it
+/// crosses.
 pub(super) struct Descent<'a> {
     pub coarse: &'a Polyhedron,
     pub fine: &'a Fine,
@@ -27,8 +28,8 @@ pub(super) struct Descent<'a> {
 impl Descent<'_> {
     /// Goes from a point to the target.
     ///
-    /// Next to the target, where the field is not exact, and where the field has a false minimum, the rest of the way
-    /// crosses as few facets as possible.
+    /// Next to the target, where the field is not exact, and where the field has a false minimum, the rest of
+    /// the way crosses as few facets as possible.
     pub fn run(&mut self, start: &FinePoint) {
         self.strip.crossings.clear();
         let corners = self.fine.polyhedron.mesh.corners(start.facet);

@@ -11,7 +11,8 @@ use faer::sparse::linalg::solvers::Llt;
 use faer::sparse::{SparseColMat, Triplet};
 use regrasp_api::{BuildError, Vec3};
 
-/// Share of the mass matrix that makes the singular Laplacian definite, relative to the inverse of the object's size squared.
+/// Share of the mass matrix that makes the singular Laplacian definite, relative to the inverse of the
+/// object's size squared.
 const REGULAR: f64 = 1e-8;
 
 /// A triangle of the Delaunay triangulation.
@@ -20,7 +21,8 @@ struct Element {
     corners: [u32; 3],
     /// Area (m²).
     area: f64,
-    /// The gradients (1/m) of the functions that are 1 at one corner and 0 at the others, in the triangle's plane.
+    /// The gradients (1/m) of the functions that are 1 at one corner and 0 at the others, in the triangle's
+    /// plane.
     hats: [Planar; 3],
 }
 
@@ -51,7 +53,8 @@ pub(super) struct Field {
 }
 
 impl Field {
-    /// Factorises both systems; the time of the heat flow is `smoothing` times the mean edge's length squared.
+    /// Factorises both systems; the time of the heat flow is `smoothing` times the mean edge's length
+    /// squared.
     pub fn new(fine: &Fine, smoothing: f64) -> Result<Self, BuildError> {
         let polyhedron = &fine.polyhedron;
         let triangles = Triangles::delaunay(polyhedron);
@@ -73,8 +76,8 @@ impl Field {
 
     /// Fills `phi` with the distances (m) of all vertices from a point; 0 there.
     ///
-    /// Crane et al., algorithm 1: heat flows for a short time, its gradient gives the direction to the source, and the
-    /// function with those unit gradients is the distance.
+    /// Crane et al., algorithm 1: heat flows for a short time, its gradient gives the direction to the
+    /// source, and the function with those unit gradients is the distance.
     pub fn distances(&self, fine: &Fine, from: &FinePoint, phi: &mut Vec<f64>, divergence: &mut Vec<f64>) {
         let mesh = &fine.polyhedron.mesh;
         let corners = &mesh.facets()[from.facet as usize];
@@ -115,7 +118,8 @@ pub(super) fn gradient(fine: &Fine, facet: u32, values: &[f64]) -> Vec3 {
     parts.sum()
 }
 
-/// Cholesky factors of `mass` M + `stiffness` L, with the lumped mass matrix M and the (cotangent) Laplacian L.
+/// Cholesky factors of `mass` M + `stiffness` L, with the lumped mass matrix M and the (cotangent) Laplacian
+/// L.
 fn factorise(
     count: usize,
     elements: &[Element],
@@ -135,7 +139,8 @@ fn factorise(
     }
     let failed = |reason: String| {
         BuildError::Unsupported(format!(
-            "the mesh's Laplacian cannot be factorised ({reason}); use `surface/geodesic` or `surface/steiner`"
+            "the mesh's Laplacian cannot be factorised ({reason}); use `surface/geodesic` or \
+                `surface/steiner`"
         ))
     };
     let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(count, count, &entries)

@@ -1,7 +1,9 @@
-//! On which sides a path may pass: places as far from the one end as from the other, where the way through is short.
+//! On which sides a path may pass: places as far from the one end as from the other, where the way through is
+//! short.
 //!
-//! Every path has to pass the line of equal distances. The sum of both fields is least there where shortest paths cross it, once for
-//! each side of an obstacle. The fields are off by some per cent, so that the lowest of these places need not be the best.
+//! Every path has to pass the line of equal distances. The sum of both fields is least there where shortest
+//! paths cross it, once for each side of an obstacle. The fields are off by some per cent, so that the lowest
+//! of these places need not be the best.
 
 use super::fine::{Fine, FinePoint};
 use crate::polyhedron::{next, previous};

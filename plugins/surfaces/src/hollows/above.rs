@@ -5,15 +5,16 @@ use crate::closest::ClosestPoints;
 use crate::polyhedron::Polyhedron;
 use regrasp_api::Vec3;
 
-/// Balls larger than the fingertip by this factor are looked at around a facet: enough for all places of a turn between two
-/// facets whose normals differ by [`GENTLE`] at most.
+/// Balls larger than the fingertip by this factor are looked at around a facet: enough for all places of a
+/// turn between two facets whose normals differ by [`GENTLE`] at most.
 ///
-/// With n = α n_A + β n_B between the two normals, a point that the ball at n holds lies in one of the balls at n_A and n_B
-/// of the radius α + β ≤ 1 / cos(0.2).
+/// With n = α n_A + β n_B between the two normals, a point that the ball at n holds lies in one of the balls
+/// at n_A and n_B of the radius α + β ≤ 1 / cos(0.2).
 const SWELL: f64 = 1.021;
 /// The cosine of 0.4 rad.
 pub(super) const GENTLE: f64 = 0.921_061;
-/// Facets around one facet that are looked at before what lies above it stays unknown: a bound of the time to prepare an object.
+/// Facets around one facet that are looked at before what lies above it stays unknown: a bound of the time to
+/// prepare an object.
 const MOST_AROUND: usize = 500;
 /// Facets above one facet beyond which they stay unknown: a bound of memory.
 const MOST_ABOVE: usize = 64;

@@ -39,11 +39,11 @@ impl Piece {
 }
 
 impl Follower<'_> {
-    /// The fractions of a piece at which the ball would begin to sink in, and at which it is out for good; `None` if it never
-    /// sinks in by more than `sink` (m). 0 and 1 where the ends themselves are blocked.
+    /// The fractions of a piece at which the ball would begin to sink in, and at which it is out for good;
+    /// `None` if it never sinks in by more than `sink` (m). 0 and 1 where the ends themselves are blocked.
     ///
-    /// Exact on straight pieces: the distance from a facet is convex along a line, so Newton's method comes to the place
-    /// without passing it. Turns are looked at every `step`.
+    /// Exact on straight pieces: the distance from a facet is convex along a line, so Newton's method comes
+    /// to the place without passing it. Turns are looked at every `step`.
     pub(super) fn blocked(&self, piece: &Piece, sink: f64, near: &mut Vec<u32>) -> Option<[f64; 2]> {
         if self.turns_freely(piece) {
             return None;
@@ -69,8 +69,8 @@ impl Follower<'_> {
 
     /// Collects the facets that the ball may sink into on a piece.
     ///
-    /// A point x inside the ball that touches p with the normal n has |x - p|² < 2 r n·(x - p): it lies above n's plane, and on a
-    /// turn above the plane of one of the ends.
+    /// A point x inside the ball that touches p with the normal n has |x - p|² < 2 r n·(x - p): it lies above
+    /// n's plane, and on a turn above the plane of one of the ends.
     fn obstacles(&self, piece: &Piece, near: &mut Vec<u32>) {
         near.clear();
         let (from, to) = (&piece.from, &piece.to);
@@ -103,7 +103,8 @@ impl Follower<'_> {
         gentle.then_some([self.above.facet(from.facet)?, self.above.facet(to.facet)?])
     }
 
-    /// Whether balls at both ends of a turn, so large that together they hold every ball in between, sink into nothing.
+    /// Whether balls at both ends of a turn, so large that together they hold every ball in between, sink
+    /// into nothing.
     fn turns_freely(&self, piece: &Piece) -> bool {
         let (from, to) = (&piece.from, &piece.to);
         let cos = from.n_O.dot(&to.n_O);
@@ -142,7 +143,8 @@ impl Follower<'_> {
         )
     }
 
-    /// The fraction of the way `along` (m) from a place at which the ball touches a facet; `None` if it does not reach it.
+    /// The fraction of the way `along` (m) from a place at which the ball touches a facet; `None` if it does
+    /// not reach it.
     fn advance_to(&self, facet: u32, sink: f64, start: &Vec3, along: &Vec3) -> Option<f64> {
         let mut t = 0.0;
         for _ in 0..NEWTON_STEPS {
@@ -184,7 +186,8 @@ impl Follower<'_> {
 
     /// The free place nearest to a blocked one, both given as steps of a turn; as a fraction of the turn.
     ///
-    /// Each guess is where the ball just touches the plane of what it last sank into, and in between bisection.
+    /// Each guess is where the ball just touches the plane of what it last sank into, and in between
+    /// bisection.
     fn edge_of_free(&self, piece: &Piece, near: &[u32], free: usize, blocked: usize, steps: f64) -> f64 {
         let (mut low, mut high) = (free as f64 / steps, blocked as f64 / steps);
         let center = |t: f64| piece.at(t).tip_center(self.radius);

@@ -1,9 +1,11 @@
-//! The fingertip's path on a solid that is not convex: where its ball would sink in, it slides over the hollow.
+//! The fingertip's path on a solid that is not convex: where its ball would sink in, it slides over the
+//! hollow.
 //!
-//! The path that rolls over the facets one by one is followed as long as the ball touches nothing else (`blocked`). Where it
-//! would sink in, the ball leaves the path at the last free place and goes to the next free place along the offset surface:
-//! straight, pushed out (or back) wherever the straight way does not touch (`touch`). In a concave edge both places are the
-//! same, and the contact jumps from one facet to the other.
+//! The path that rolls over the facets one by one is followed as long as the ball touches nothing else
+//! (`blocked`). Where it would sink in, the ball leaves the path at the last free place and goes to the next
+//! free place along the offset surface: straight, pushed out (or back) wherever the straight way does not
+//! touch (`touch`). In a concave edge both places are the same, and the contact jumps from one facet to the
+//! other.
 
 mod above;
 mod blocked;
@@ -23,8 +25,8 @@ const SINK: f64 = 1e-10;
 const SLACK: f64 = 5.0 * SINK;
 /// How far (m) a way between two waypoints may stray from the offset surface.
 const STRAY: f64 = 5e-7;
-/// How far (m), in fingertip radii, the contact of a waypoint may lie from the point that the ball touches: so far the
-/// normals differ (rad).
+/// How far (m), in fingertip radii, the contact of a waypoint may lie from the point that the ball touches:
+/// so far the normals differ (rad).
 const ASIDE: f64 = 1e-4;
 /// Directions (unit vectors) that differ by less are one.
 const PARALLEL: f64 = 1e-9;
@@ -52,7 +54,8 @@ pub(crate) struct Follower<'a> {
 }
 
 impl Follower<'_> {
-    /// Rewrites `path`, whose waypoints roll over the facets, so that the ball sinks into nothing; `false` where it cannot go.
+    /// Rewrites `path`, whose waypoints roll over the facets, so that the ball sinks into nothing; `false`
+    /// where it cannot go.
     pub fn follow(&self, path: &mut SurfacePath, room: &mut Room) -> bool {
         let Room { rolled, near } = room;
         rolled.clear();
@@ -100,8 +103,8 @@ impl Follower<'_> {
         }
     }
 
-    /// Appends a piece of the rolled path of which a part may be blocked; `left_at` is where the ball left it for a hollow,
-    /// before and after.
+    /// Appends a piece of the rolled path of which a part may be blocked; `left_at` is where the ball left it
+    /// for a hollow, before and after.
     fn pass(
         &self,
         path: &mut SurfacePath,
@@ -156,7 +159,8 @@ impl Follower<'_> {
         true
     }
 
-    /// Appends waypoints until the ways between them stay on the offset surface; the touch at the end, or `None` if stuck.
+    /// Appends waypoints until the ways between them stay on the offset surface; the touch at the end, or
+    /// `None` if stuck.
     fn join(
         &self,
         path: &mut SurfacePath,
@@ -221,8 +225,8 @@ impl Follower<'_> {
         places.iter().all(|&t| {
             let contact = between(&a, &b, t);
             let p_OF = contact.tip_center(self.radius);
-            // The ball touches one of the ends' facets where the contact says, and nothing else first; in a concave edge it
-            // touches both, and either is right.
+            // The ball touches one of the ends' facets where the contact says, and nothing else first; in a
+            // concave edge it touches both, and either is right.
             let touched = [a.facet, b.facet].into_iter().filter_map(|facet| {
                 let tip = closest_of_facet(self.polyhedron, &p_OF, facet);
                 let is_there = (tip.contact.p_OC - contact.p_OC).norm() < ASIDE * self.radius;

@@ -23,8 +23,8 @@ impl Follower<'_> {
 
     /// Moves a ball's centre to the offset surface; `None` where it comes to no rest.
     ///
-    /// Each step puts the centre on the offset planes of the last few closest points at once (least change), so that a
-    /// corner of two or three facets is met in a few steps.
+    /// Each step puts the centre on the offset planes of the last few closest points at once (least change),
+    /// so that a corner of two or three facets is met in a few steps.
     pub(super) fn settle(&self, p_OF: &Vec3) -> Option<Touch> {
         let mut center = *p_OF;
         let mut facet = None;
@@ -50,7 +50,8 @@ impl Follower<'_> {
         None
     }
 
-    /// How far (m) to move along the normals of two contacts to the offset planes of both, if they are not parallel.
+    /// How far (m) to move along the normals of two contacts to the offset planes of both, if they are not
+    /// parallel.
     fn moves(&self, p_OF: &Vec3, a: &Contact, b: &Contact) -> Option<[f64; 2]> {
         let cos = a.n_O.dot(&b.n_O);
         let determinant = 1.0 - cos * cos;
@@ -89,8 +90,8 @@ impl Follower<'_> {
         None
     }
 
-    /// The place between two at which the contact leaves a facet over an edge, or comes in over one: there the ball begins to
-    /// turn, or ends.
+    /// The place between two at which the contact leaves a facet over an edge, or comes in over one: there
+    /// the ball begins to turn, or ends.
     pub(super) fn knee(&self, from: &Touch, to: &Touch) -> Option<Touch> {
         self.way_out(from, to).or_else(|| self.way_out(to, from))
     }

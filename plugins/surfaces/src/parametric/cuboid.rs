@@ -1,6 +1,6 @@
 //! A box: straight lines over unfolded faces.
 
-use super::form::{Curve, Form};
+use super::curve::{Curve, Form};
 use crate::polyhedron::Planar;
 use regrasp_api::Vec3;
 
@@ -91,8 +91,9 @@ fn turn(a: &Planar, b: &Planar) -> f64 {
 
 /// Looks from a point through all sequences of different faces for another.
 ///
-/// A shortest path visits no face of a convex solid twice, and is a straight line through the edges that it crosses when
-/// their faces are laid out (Sharir & Schorr, "On shortest paths in polyhedral spaces", SIAM J. Comput. 15, 1986).
+/// A shortest path visits no face of a convex solid twice, and is a straight line through the edges that it
+/// crosses when their faces are laid out (Sharir & Schorr, "On shortest paths in polyhedral spaces", SIAM J.
+/// Comput. 15, 1986).
 struct Look<'a> {
     half: &'a Vec3,
     target: Vec3,

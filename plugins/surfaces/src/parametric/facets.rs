@@ -1,10 +1,12 @@
 //! From a closed form to the facets of a mesh that stands for it, and back.
 //!
-//! Both lie apart by the faceting's depth. A point of the one and its partner on the other lie on one ray from the form's
-//! core, so that going there and back leads to the same point: through the centre of balls and ellipsoids, at right angles
-//! from the axis of capsules and the ring of a torus. A cylinder's section is shrunk to the mesh's polygon. Boxes are their mesh.
+//! Both lie apart by the faceting's depth. A point of the one and its partner on the other lie on one ray
+//! from the form's core, so that going there and back leads to the same point: through the centre of balls
+//! and ellipsoids, at right angles from the axis of capsules and the ring of a torus. A cylinder's section is
+//! shrunk to the mesh's polygon. Boxes are their mesh.
 
-use super::form::{ClosedForm, Curve};
+use super::curve::Curve;
+use super::form::ClosedForm;
 use super::rim::Rim;
 use crate::lift::Leg;
 use crate::polyhedron::Place;
@@ -37,7 +39,8 @@ pub(super) struct Facets(Partner);
 pub(super) struct Corridor {
     strip: Strip,
     piece: Vec<Leg>,
-    /// Facets in the order in which they are reached, each with the half-edge through which, and from which entry.
+    /// Facets in the order in which they are reached, each with the half-edge through which, and from which
+    /// entry.
     reached: Vec<(u32, u32, u32)>,
 }
 
@@ -92,7 +95,8 @@ impl Facets {
 impl Corridor {
     /// Appends the way over the facets between the partners of a curve's points; the ends are given.
     ///
-    /// Between two neighbouring points it is shortest, so it strays from the curve by the square of their distance only.
+    /// Between two neighbouring points it is shortest, so it strays from the curve by the square of their
+    /// distance only.
     pub fn follow(
         &mut self,
         (rolling, facets, form): (&Rolling, &Facets, &ClosedForm),

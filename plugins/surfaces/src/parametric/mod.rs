@@ -1,28 +1,34 @@
-//! `surface/parametric`: shortest paths of sphere, ellipsoid, cuboid, cylinder, capsule and torus in closed form.
+//! `surface/parametric`: shortest paths of sphere, ellipsoid, cuboid, cylinder, capsule and torus in closed
+//! form.
 //!
 //! # Two surfaces
-//! The facets of the object's mesh are its true surface: plans are judged there, and contacts, samples and projections lie
-//! there, exactly as with `surface/geodesic`. What comes from the closed form ([`ClosedForm`]) is *where paths and walks lead*: the
-//! shortest path of the smooth solid between the points that belong to the two contacts, followed on the facets through points at most
-//! `spacing` apart. A point of the closed form and its partner on the facets lie on one ray from the centre or the axis. A path's
-//! `length` is that of its way over the facets; [`Parametric::closed_form`] gives lengths and points of the exact curve. Both agree
-//! better and better for finer meshes, and are the same on a cuboid.
+//! The facets of the object's mesh are its true surface: plans are judged there, and contacts, samples and
+//! projections lie there, exactly as with `surface/geodesic`. What comes from the closed form
+//! ([`ClosedForm`]) is *where paths and walks lead*: the shortest path of the smooth solid between the points
+//! that belong to the two contacts, followed on the facets through points at most `spacing` apart. A point of
+//! the closed form and its partner on the facets lie on one ray from the centre or the axis. A path's
+//! `length` is that of its way over the facets; [`Parametric::closed_form`] gives lengths and points of the
+//! exact curve. Both agree better and better for finer meshes, and are the same on a cuboid.
 //!
 //! # How paths are found
 //! - *Sphere*: great circles.
 //! - *Cuboid*: straight lines over all sequences of unfolded faces.
-//! - *Cylinder, capsule*: helices, and the caps' chords or great circles, with the best crossings of the rims.
-//! - *Ellipsoid, torus*: the geodesic equation, solved between two points by shooting. A chain of points, relaxed from several
-//!   sides, gives the first directions, so that the shortest of several geodesics is found.
+//! - *Cylinder, capsule*: helices, and the caps' chords or great circles, with the best crossings of the
+//!   rims.
+//! - *Ellipsoid, torus*: the geodesic equation, solved between two points by shooting. A chain of points,
+//!   relaxed from several sides, gives the first directions, so that the shortest of several geodesics is
+//!   found.
 //!
 //! The sphere is exact to 1e-9 of its size, the others to 1e-6.
 //!
 //! # When to use it
-//! Where paths should be those of the smooth object rather than of its facets: their course does not depend on how the mesh is cut.
-//! A mesh without closed form is refused, and so is an ellipsoid flatter than 1 : 4. `false` as with `surface/geodesic`: an end that cannot be touched, or a fingertip that would
-//! have to leap (torus).
+//! Where paths should be those of the smooth object rather than of its facets: their course does not depend
+//! on how the mesh is cut. A mesh without closed form is refused, and so is an ellipsoid flatter than 1 : 4.
+//! `false` as with `surface/geodesic`: an end that cannot be touched, or a fingertip that would have to leap
+//! (torus).
 
 mod cuboid;
+mod curve;
 mod facets;
 mod form;
 mod rim;
@@ -30,7 +36,8 @@ mod smooth;
 mod sphere;
 mod tube;
 
-pub use form::{ClosedForm, Curve};
+pub use curve::Curve;
+pub use form::ClosedForm;
 
 use crate::hollows::Room;
 use crate::lift::Leg;
@@ -50,9 +57,12 @@ inventory::submit! {
         slots: &[Slot::Surface],
         summary: "Shortest paths of sphere, ellipsoid, cuboid, cylinder, capsule and torus in closed form",
         references: &[
-            "do Carmo, Differential geometry of curves and surfaces, Prentice-Hall 1976 (geodesics, Clairaut's relation, Jacobi fields)",
-            "Sharir & Schorr, On shortest paths in polyhedral spaces, SIAM J. Comput. 15, 1986 (unfolded faces)",
-            "Itoh & Kiyohara, The cut loci and the conjugate loci on ellipsoids, Manuscripta Math. 114, 2004 (which sides to try)",
+            "do Carmo, Differential geometry of curves and surfaces, Prentice-Hall 1976 (geodesics, \
+                Clairaut's relation, Jacobi fields)",
+            "Sharir & Schorr, On shortest paths in polyhedral spaces, SIAM J. Comput. 15, 1986 (unfolded \
+                faces)",
+            "Itoh & Kiyohara, The cut loci and the conjugate loci on ellipsoids, Manuscripta Math. 114, \
+                2004 (which sides to try)",
         ],
         schema: ParametricSettings::schema,
         check: check_settings::<ParametricSettings>,
@@ -75,15 +85,17 @@ const MOST_TRIES: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ParametricSettings {
-    /// Largest distance between two points of the closed form's path through which the path over the facets is led, in radii of
-    /// the object (the largest distance of a vertex from its origin). Default 0.06, a neutral choice.
+    /// Largest distance between two points of the closed form's path through which the path over the facets
+    /// is led, in radii of the object (the largest distance of a vertex from its origin). Default 0.06, a
+    /// neutral choice.
     #[schemars(range(min = 0.005, max = 0.5), extend("x-unit" = "1"))]
     pub spacing: f64,
-    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, as for `surface/geodesic`.
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, as
+    /// for `surface/geodesic`.
     #[schemars(range(min = 1.0, max = 180.0), extend("x-unit" = "degrees"))]
     pub sharp_angle_deg: f64,
-    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked;
-    /// at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
+    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is
+    /// checked; at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
     #[schemars(range(min = 1e-5, max = 1e-2), extend("x-unit" = "m"))]
     pub step: f64,
 }
@@ -120,7 +132,8 @@ thread_local! {
 }
 
 impl Parametric {
-    /// Prepares the surface of an object for fingertips of the given radius (m); refuses objects without closed form.
+    /// Prepares the surface of an object for fingertips of the given radius (m); refuses objects without
+    /// closed form.
     pub fn new(settings: &ParametricSettings, object: &ObjectModel, radius: f64) -> Result<Self, BuildError> {
         settings.validate()?;
         let refused = |reason: &str| {

@@ -10,8 +10,8 @@ pub(super) struct Rim {
 }
 
 impl Rim {
-    /// Reads the polygon from the vertices of the upper rim; `None` where they are no polygon about the axis or other vertices
-    /// at the side lie between them.
+    /// Reads the polygon from the vertices of the upper rim; `None` where they are no polygon about the axis
+    /// or other vertices at the side lie between them.
     pub fn new(radius: f64, half_height: f64, slack: f64, mesh: &Mesh) -> Option<Self> {
         let on_side = |v: &&Vec3| (v.xy().norm() - radius).abs() <= slack;
         let on_top = |v: &&Vec3| (v.z - half_height).abs() <= slack;

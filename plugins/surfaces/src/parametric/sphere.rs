@@ -1,6 +1,6 @@
 //! A ball: great circles.
 
-use super::form::{Curve, Form};
+use super::curve::{Curve, Form};
 use regrasp_api::{Vec3, any_orthogonal};
 
 /// A ball about the origin.

@@ -22,7 +22,8 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// Puts max(`fewest`, length / `spacing` (m), rounded up) points on every edge, each in the middle of an equal part.
+    /// Puts max(`fewest`, length / `spacing` (m), rounded up) points on every edge, each in the middle of an
+    /// equal part.
     pub fn new(polyhedron: &Polyhedron, fewest: u32, spacing: f64) -> Self {
         let mut graph =
             Self { points: Vec::new(), edges: Vec::new(), ranges: vec![(0, 0); polyhedron.half_edges.len()] };
@@ -75,7 +76,8 @@ pub(super) struct Label {
 }
 const UNKNOWN: Label = Label { epoch: 0, length: f64::INFINITY, before: START, facet: 0 };
 
-/// A point that waits, by the least length (m) of a path through it; ties by number, so that the order is certain.
+/// A point that waits, by the least length (m) of a path through it; ties by number, so that the order is
+/// certain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Waiting {
     least: f64,

@@ -38,7 +38,8 @@ pub fn subdivide(vertices: &mut Vec<Vec3>, facets: &[[u32; 3]]) -> Vec<[u32; 3]>
         .collect()
 }
 
-/// A ball's icosahedron with each facet cut into 4^levels, vertices on the ball, then stretched along the axes (m).
+/// A ball's icosahedron with each facet cut into 4^levels, vertices on the ball, then stretched along the
+/// axes (m).
 pub fn ellipsoid(semi_axes: Vec3, levels: usize) -> Mesh {
     let g = (1.0 + 5.0_f64.sqrt()) / 2.0;
     let mut vertices = Vec::new();

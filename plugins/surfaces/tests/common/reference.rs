@@ -1,4 +1,5 @@
-//! Shortest paths by brute force: every strip of facets that a straight line can run through, every chain of vertices.
+//! Shortest paths by brute force: every strip of facets that a straight line can run through, every chain of
+//! vertices.
 //!
 //! Exponential, without bounds or labels: for meshes of a few dozen facets.
 
@@ -31,7 +32,8 @@ pub fn facets_with(mesh: &Mesh, p: &Vec3) -> Vec<u32> {
     (0..mesh.facets().len() as u32).filter(|&f| distance_to_facet(mesh, f, p) < 1e-10).collect()
 }
 
-/// Distance (m) of a point from a facet, from the three half-planes and the plane: exact for points in the plane's slab.
+/// Distance (m) of a point from a facet, from the three half-planes and the plane: exact for points in the
+/// plane's slab.
 fn distance_to_facet(mesh: &Mesh, facet: u32, p: &Vec3) -> f64 {
     let corners = mesh.corners(facet);
     let n = mesh.normal(facet);
@@ -42,7 +44,8 @@ fn distance_to_facet(mesh: &Mesh, facet: u32, p: &Vec3) -> f64 {
     outside.fold(n.dot(&(p - corners[0])).abs(), f64::max)
 }
 
-/// Where a point with the given distances from two unfolded points lies, to the left of the line from `a` to `b`.
+/// Where a point with the given distances from two unfolded points lies, to the left of the line from `a` to
+/// `b`.
 fn locate(a: P2, b: P2, to_a: f64, to_b: f64) -> P2 {
     let d = sub(b, a);
     let length = norm(d);
@@ -52,8 +55,8 @@ fn locate(a: P2, b: P2, to_a: f64, to_b: f64) -> P2 {
 }
 
 impl Sight<'_> {
-    /// Looks from the origin into `facet`, whose edge from vertex `v[0]` to `v[1]` is unfolded to `a`, `b`, between the rays
-    /// towards `left` and `right`.
+    /// Looks from the origin into `facet`, whose edge from vertex `v[0]` to `v[1]` is unfolded to `a`, `b`,
+    /// between the rays towards `left` and `right`.
     fn look(&mut self, facet: u32, v: [u32; 2], a: P2, b: P2, right: P2, left: P2) {
         if self.visited[facet as usize] {
             return;
@@ -72,7 +75,8 @@ impl Sight<'_> {
         let c = self.mesh.vertices()[apex as usize];
         let top = locate(a, b, (c - p).norm(), (c - q).norm());
         self.visited[facet as usize] = true;
-        // The facet lies to the left of a → b, so a is on the left side seen from the origin... its edges b → top and top → a.
+        // The facet lies to the left of a → b, so a is on the left side seen from the origin... its edges b →
+        // top and top → a.
         self.cross_edge(facet, (k + 1) % 3, b, top, right, left);
         self.cross_edge(facet, (k + 2) % 3, top, a, right, left);
         self.visited[facet as usize] = false;
@@ -91,7 +95,8 @@ impl Sight<'_> {
     }
 }
 
-/// The shortest straight line from `s` to `t` through unfolded facets, passing no vertex (m); infinite if there is none.
+/// The shortest straight line from `s` to `t` through unfolded facets, passing no vertex (m); infinite if
+/// there is none.
 fn straight(mesh: &Mesh, s: &Vec3, t: &Vec3) -> f64 {
     let (starts, target_facets) = (facets_with(mesh, s), facets_with(mesh, t));
     assert!(!starts.is_empty() && !target_facets.is_empty());
@@ -184,8 +189,9 @@ fn from_facet(mesh: &Mesh, facet: u32, p: &Vec3) -> f64 {
     edges.fold(f64::INFINITY, f64::min)
 }
 
-/// Distances (m) on a graph with many points on every edge (Lanthier, Maheshwari & Sack, "Approximated weighted shortest
-/// paths on polyhedral surfaces", SoCG 1997): never too short, too long by less and less with more points.
+/// Distances (m) on a graph with many points on every edge (Lanthier, Maheshwari & Sack, "Approximated
+/// weighted shortest paths on polyhedral surfaces", SoCG 1997): never too short, too long by less and less
+/// with more points.
 pub struct EdgePoints<'a> {
     mesh: &'a Mesh,
     places: Vec<Vec3>,

@@ -1,7 +1,7 @@
 //! Problems for local planners: starts and targets.
 
+use crate::calls::{context, random};
 use crate::fixtures::{Bench, to_hand};
-use crate::law::{context, random};
 use crate::reference::{Closure, RejectionSampler, closure};
 use regrasp_api::{
     ClosedChainSampler, Configuration, Contact, FingerIndex, FingerJoints, FingerSet, Hand, PerFinger, Pose,
@@ -173,7 +173,8 @@ fn grasps() -> Vec<Case> {
     cases
 }
 
-/// Directions of fingertips such that finger 0 passes `side` = ±1 along x on its shortest way from the first set to the second.
+/// Directions of fingertips such that finger 0 passes `side` = ±1 along x on its shortest way from the first
+/// set to the second.
 ///
 /// The others hold the ball in the plane of x and z.
 fn around(side: f64) -> [[[f64; 3]; 4]; 2] {
@@ -221,7 +222,8 @@ fn regrasps() -> Vec<Case> {
     cases
 }
 
-/// One finger to a contact 6 mm from its own, the others holding, the end free of collision; `None` if this key gives none.
+/// One finger to a contact 6 mm from its own, the others holding, the end free of collision; `None` if this
+/// key gives none.
 fn short_regrasp(bench: &'static Bench, key: u64, random: &mut Random) -> Option<Case> {
     let from = somewhere(bench, key);
     let task = bench.task();

@@ -55,7 +55,8 @@ impl Touch {
         }
     }
 
-    /// How far, in O and along the surface, the tip's material point at this contact moves against the object's until `later`.
+    /// How far, in O and along the surface, the tip's material point at this contact moves against the
+    /// object's until `later`.
     pub fn slip(&self, later: &Self) -> Vec3 {
         let contact_H = to_hand(&self.X_HO, &self.p_OC);
         let of_tip = to_hand(&later.X_HF, &to_object(&self.X_HF, &contact_H));

@@ -3,21 +3,16 @@
 mod answer;
 mod case;
 mod inspect;
+mod journey;
 mod special;
 mod way;
 
 use crate::law::{Law, Subject, context};
 use crate::report::{Finding, broken};
 use case::{Case, cases};
-use regrasp_api::{Build, BuildError, CallError, LocalPlanner, Path, Reached, Slot};
+pub(crate) use journey::Journey;
+use regrasp_api::{Build, BuildError, CallError, LocalPlanner, Path, Slot};
 use std::rc::Rc;
-
-/// What the plugin made of one problem.
-pub(crate) struct Journey {
-    case: &'static Case,
-    reached: Reached,
-    path: Path,
-}
 
 /// A slot as a type, so that one check serves all three.
 pub(crate) trait Kind {
@@ -194,7 +189,8 @@ fn journeys<K: Kind>(subject: &Subject<'_>) -> Finding<Rc<Vec<Journey>>> {
         let (task, target) = (case.bench.task(), case.goal.target());
         let reached =
             match planner.connect(&task, &case.from, &target, Some(&mut path), &mut context(key as u64)) {
-                // The plugin's law is for other hands or contact models: it says so, and is tried on the rest.
+                // The plugin's law is for other hands or contact models: it says so, and is tried on the
+                // rest.
                 Err(CallError::Unsupported { .. }) => continue,
                 reached => reached?,
             };

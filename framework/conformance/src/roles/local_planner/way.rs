@@ -97,8 +97,9 @@ pub(super) fn contacts_true<K: Kind>(subject: &Subject<'_>) -> Finding {
     Ok(())
 }
 
-/// Between the states of a path in GS_n a fingertip may leave the surface by this many tolerances: the path is never executed, its states
-/// are what decomposition aims at. A jump to another branch of the inverse kinematics leaves by far more.
+/// Between the states of a path in GS_n a fingertip may leave the surface by this many tolerances: the path
+/// is never executed, its states are what decomposition aims at. A jump to another branch of the inverse
+/// kinematics leaves by far more.
 const GUIDE: f64 = 5.0;
 
 pub(super) fn stays_closed<K: Kind>(subject: &Subject<'_>) -> Finding {

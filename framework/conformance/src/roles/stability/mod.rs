@@ -56,7 +56,8 @@ pub(crate) const LAWS: &[Law] = &[
     Law { name: "margins", why: "plans are compared by their margins", check: proof::margins },
     Law {
         name: "liftable",
-        why: "lifting a finger that is needed drops the object; the fast way must not differ from the plain one",
+        why: "lifting a finger that is needed drops the object; the fast way must not differ from the plain \
+            one",
         check: call::liftable,
     },
     Law {

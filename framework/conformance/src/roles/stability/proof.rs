@@ -52,7 +52,8 @@ pub(super) fn certificate(subject: &Subject<'_>) -> Finding {
     Ok(())
 }
 
-/// Forces that hold: one for each contact, strictly inside the cone, balanced to far less than the room that is left there.
+/// Forces that hold: one for each contact, strictly inside the cone, balanced to far less than the room that
+/// is left there.
 fn force_fault(grasp: &Grasp<'_>, touches: &[Touch], forces: &[Vec3], torsions: &[f64]) -> Option<String> {
     if forces.len() != touches.len() || torsions.len() != touches.len() {
         return Some("not one force for each contact".into());

@@ -46,7 +46,8 @@ pub(super) fn rigid_motion(subject: &Subject<'_>) -> Finding {
     Ok(())
 }
 
-/// The test for the same object in another frame: a test that knows the centre of mass finds it where the contacts went.
+/// The test for the same object in another frame: a test that knows the centre of mass finds it where the
+/// contacts went.
 fn build_moved(subject: &Subject<'_>, R: &Rotation, t: &Vec3) -> Finding<Box<dyn StabilityTest>> {
     let Build::StabilityTest(build) = subject.entry.build else { return broken("it builds another role") };
     let parts = Bench::free_sphere().parts();

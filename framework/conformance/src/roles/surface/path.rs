@@ -9,7 +9,8 @@ use regrasp_api::{Contact, Slot, SurfaceParam, SurfacePath, Waypoint};
 
 /// Pairs of contacts on each object.
 const PAIRS: usize = 18;
-/// How far (m) the straight line between two waypoints may leave the surface: half of a plan's tolerance for closure.
+/// How far (m) the straight line between two waypoints may leave the surface: half of a plan's tolerance for
+/// closure.
 const BETWEEN: f64 = 1e-5;
 
 /// Tries something on paths over each object that a fingertip can follow.

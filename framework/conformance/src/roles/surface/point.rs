@@ -24,7 +24,8 @@ pub(super) fn sample_on_surface(subject: &Subject<'_>) -> Finding {
     })
 }
 
-/// Parts of the surface, each with its share of the area: the thirds of a box's six faces, the octants of round objects.
+/// Parts of the surface, each with its share of the area: the thirds of a box's six faces, the octants of
+/// round objects.
 fn parts(ground: &Ground) -> (Vec<f64>, impl Fn(&Vec3) -> usize) {
     let half = match ground.object.primitive {
         Some(Primitive::Cuboid { half_size }) => Some(half_size),

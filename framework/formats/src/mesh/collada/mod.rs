@@ -1,8 +1,9 @@
 //! COLLADA (`.dae`): the triangles and polygons of its scene, in metres.
 //!
-//! Format: "COLLADA – Digital Asset Schema Release 1.4.1", Khronos Group, 2008. Read are geometries of type `<mesh>`, the nodes of the visual scene
-//! with their transforms, and the asset's `<unit>`. As in ROS, where most such files of robots come from, `<up_axis>` does not turn the mesh:
-//! its coordinates are those of the link. Materials, lights, skins and animations are ignored.
+//! Format: "COLLADA – Digital Asset Schema Release 1.4.1", Khronos Group, 2008. Read are geometries of type
+//! `<mesh>`, the nodes of the visual scene with their transforms, and the asset's `<unit>`. As in ROS, where
+//! most such files of robots come from, `<up_axis>` does not turn the mesh: its coordinates are those of the
+//! link. Materials, lights, skins and animations are ignored.
 
 mod geometry;
 mod scene;

@@ -1,8 +1,9 @@
 //! Benchmark logs as OMPL writes them: read by its `ompl_benchmark_statistics`, shown by Planner Arena.
 //!
-//! M. Moll, I. A. Şucan, L. E. Kavraki, "Benchmarking motion planning algorithms: an extensible infrastructure for analysis and visualization", IEEE
-//! Robotics & Automation Magazine 2015. A log is one experiment, here a scenario; a planner is a variant. There is no progress: a run gives one
-//! plan at its end. A limit of 0 (seconds, MB) means that there is none.
+//! M. Moll, I. A. Şucan, L. E. Kavraki, "Benchmarking motion planning algorithms: an extensible
+//! infrastructure for analysis and visualization", IEEE Robotics & Automation Magazine 2015. A log is one
+//! experiment, here a scenario; a planner is a variant. There is no progress: a run gives one plan at its
+//! end. A limit of 0 (seconds, MB) means that there is none.
 
 mod property;
 mod time;
@@ -52,8 +53,10 @@ fn head(study: &Study, scenario: &StudyScenario, row: &[Cell<'_>]) -> String {
     let runs = row.iter().flat_map(|cell| &cell.runs);
     let total: f64 = runs.map(|run| run.times.planning_s + run.times.verification_s).sum();
     format!(
-        "Regrasp version {version}\nExperiment {}\nRunning on {host}\nStarting at {}\n<<<|\n{}|>>>\n<<<|\n {cpu}\n|>>>\n\
-         {} is the random seed\n{} seconds per run\n0 MB per run\n{} runs per planner\n{total} seconds spent to collect the data\n",
+        "Regrasp version {version}\nExperiment {}\nRunning on {host}\nStarting at {}\n<<<|\n{}|>>>\n<<<|\n \
+            {cpu}\n|>>>\n\
+         {} is the random seed\n{} seconds per run\n0 MB per run\n{} runs per planner\n{total} seconds \
+         spent to collect the data\n",
         token(&scenario.name),
         time::utc(study.started_s),
         setup(study, scenario),

@@ -1,6 +1,7 @@
 //! Seconds as a date.
 
-/// Seconds since 1970-01-01 as `YYYY-MM-DD HH:MM:SS` UTC, in the Gregorian calendar, leap seconds left out as in Unix time.
+/// Seconds since 1970-01-01 as `YYYY-MM-DD HH:MM:SS` UTC, in the Gregorian calendar, leap seconds left out as
+/// in Unix time.
 pub fn utc(seconds: u64) -> String {
     let (days, rest) = (seconds / 86_400, seconds % 86_400);
     let (year, month, day) = date(days);

@@ -1,7 +1,7 @@
 //! `report.html`: one page that holds all it needs and asks the network for nothing.
 //!
-//! Rust computes every figure; the script only draws, and filters. Text of users reaches the page as JSON in which no `<` is left, and the script puts it
-//! in as text, never as HTML.
+//! Rust computes every figure; the script only draws, and filters. Text of users reaches the page as JSON in
+//! which no `<` is left, and the script puts it in as text, never as HTML.
 
 mod data;
 mod pairs;
@@ -20,13 +20,15 @@ const SCRIPT: [&str; 3] = [include_str!("draw.js"), include_str!("charts.js"), i
 
 /// The text of `report.html`.
 ///
-/// `strips` are pictures of the scenarios, as [`strip`] makes them, in the order of the study's scenarios; `None` where there is none.
+/// `strips` are pictures of the scenarios, as [`strip`] makes them, in the order of the study's scenarios;
+/// `None` where there is none.
 pub fn html(study: &Study, rows: &[Vec<Cell<'_>>], strips: &[Option<String>]) -> String {
     let data =
         serde_json::to_string(&page_data(study, rows, strips)).expect("plain data is written without fault");
     let parts = [
         ("/*STYLE*/", format!("{}{STYLE}", regrasp_view::picture::STYLE)),
-        // Within a script a `<` could end it (`</script>`) or hide its end (`<!--`); in JSON it only occurs in strings.
+        // Within a script a `<` could end it (`</script>`) or hide its end (`<!--`); in JSON it only occurs
+        // in strings.
         ("/*DATA*/", data.replace('<', "\\u003c")),
         ("/*SCRIPT*/", SCRIPT.concat()),
     ];

@@ -40,7 +40,8 @@ pub fn pairs(row: &[Cell<'_>]) -> Vec<Pair> {
     let pair = |((k, l, paired), (time_p, solved_p)): (&(usize, usize, Paired), (f64, f64))| Pair {
         a: row[*k].index,
         b: row[*l].index,
-        // An end that is not known (too few pairs) has no number in JSON: then there is no interval to show, and no ratio either.
+        // An end that is not known (too few pairs) has no number in JSON: then there is no interval to show,
+        // and no ratio either.
         ratio: paired.ratio.filter(|ratio| ratio.high.is_finite()),
         time_p,
         solved_p,
@@ -50,8 +51,8 @@ pub fn pairs(row: &[Cell<'_>]) -> Vec<Pair> {
     compared.iter().zip(time_p.into_iter().zip(solved_p)).map(pair).collect()
 }
 
-/// The variants that may be called best: the one with the smallest median over all runs, and those not shown to differ from it. Indices of
-/// variants in their order, the best one first.
+/// The variants that may be called best: the one with the smallest median over all runs, and those not shown
+/// to differ from it. Indices of variants in their order, the best one first.
 pub fn best(row: &[Cell<'_>], pairs: &[Pair]) -> Vec<usize> {
     let solvers = row.iter().filter(|cell| cell.median_of_all_s().is_finite());
     let Some(first) = solvers.clone().min_by(|a, b| a.median_of_all_s().total_cmp(&b.median_of_all_s()))

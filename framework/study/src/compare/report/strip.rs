@@ -10,7 +10,8 @@ const FRAMES: usize = 4;
 /// Room about each picture (mm).
 const ROOM: f64 = 6.0;
 
-/// Draws a plan at even steps from its first to its last state; `None` where it has no state, or is not of a problem that can be drawn.
+/// Draws a plan at even steps from its first to its last state; `None` where it has no state, or is not of a
+/// problem that can be drawn.
 pub fn strip(plan: &Plan) -> Option<String> {
     let problem = &plan.scenario.problem;
     let hand = ChainHand::new(problem.hand.clone()).ok()?;

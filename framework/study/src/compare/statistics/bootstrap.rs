@@ -11,8 +11,9 @@ const STREAM: u64 = 0xb007;
 
 /// The median with its 95 % percentile interval; `None` for no finite values.
 ///
-/// B. Efron, "Bootstrap methods: another look at the jackknife", Annals of Statistics 1979. 2000 resamples from a stream that the number of values
-/// alone determines: equal values give the equal interval, in whichever order they come.
+/// B. Efron, "Bootstrap methods: another look at the jackknife", Annals of Statistics 1979. 2000 resamples
+/// from a stream that the number of values alone determines: equal values give the equal interval, in
+/// whichever order they come.
 pub fn median_interval(values: impl IntoIterator<Item = f64>) -> Option<Estimate> {
     let values = sorted(values);
     let value = quantile(&values, 0.5)?;
@@ -24,7 +25,8 @@ pub fn median_interval(values: impl IntoIterator<Item = f64>) -> Option<Estimate
     Some(Estimate { value, low: end(0.025)?, high: end(0.975)? })
 }
 
-/// The median of one resample: the values are sorted, so that counting how often each was drawn replaces sorting the resample.
+/// The median of one resample: the values are sorted, so that counting how often each was drawn replaces
+/// sorting the resample.
 fn resampled(values: &[f64], hits: &mut [usize], random: &mut Random) -> f64 {
     hits.fill(0);
     (0..values.len()).for_each(|_| hits[random.index(values.len())] += 1);
@@ -47,7 +49,8 @@ mod tests {
 
     #[test]
     fn the_interval_covers_as_often_as_it_says() {
-        // The median of ln-normal samples is 1; of 400 intervals about 95 % hold it (3 standard deviations are 3.3 %).
+        // The median of ln-normal samples is 1; of 400 intervals about 95 % hold it (3 standard deviations
+        // are 3.3 %).
         let mut random = Random::from_key(5, 0, 0, 0);
         let mut holds = || {
             let found = median_interval((0..60).map(|_| random.normal().exp())).unwrap();
@@ -59,7 +62,8 @@ mod tests {
 
     #[test]
     fn agrees_with_scipy() {
-        // scipy 1.17.1: scipy.stats.bootstrap((range(1, 52),), numpy.median, method="percentile") gives 19 and 33.
+        // scipy 1.17.1: scipy.stats.bootstrap((range(1, 52),), numpy.median, method="percentile") gives 19
+        // and 33.
         let found = median_interval((1..52).map(f64::from)).unwrap();
         assert_eq!(found.value, 26.0);
         assert!((found.low - 19.0).abs() <= 1.0 && (found.high - 33.0).abs() <= 1.0, "{found:?}");

@@ -2,8 +2,9 @@
 
 /// The two-sided p-value of McNemar's test in its exact form, from the pairs that only one side solved.
 ///
-/// Q. McNemar, "Note on the sampling error of the difference between correlated proportions or percentages", Psychometrika 1947; exact: a fair
-/// coin decides each such pair. 1 where there is none. Cost: the smaller count.
+/// Q. McNemar, "Note on the sampling error of the difference between correlated proportions or percentages",
+/// Psychometrika 1947; exact: a fair coin decides each such pair. 1 where there is none. Cost: the smaller
+/// count.
 pub fn mcnemar(only_baseline: usize, only_variant: usize) -> f64 {
     let pairs = only_baseline + only_variant;
     // The logarithm of C(n, k) / 2ⁿ: the number itself underflows beyond a thousand pairs.

@@ -1,6 +1,8 @@
-//! The statistics of a comparison: proportions, medians and paired tests, each with the interval that says how sure it is.
+//! The statistics of a comparison: proportions, medians and paired tests, each with the interval that says
+//! how sure it is.
 //!
-//! All functions are pure and deterministic; the bootstrap draws from a stream of fixed seed. Intervals hold 95 %.
+//! All functions are pure and deterministic; the bootstrap draws from a stream of fixed seed. Intervals hold
+//! 95 %.
 
 mod bootstrap;
 mod discordant;
@@ -44,7 +46,7 @@ impl Estimate {
 /// The level that a difference must meet to be called one, and one less the confidence of all intervals.
 pub const ALPHA: f64 = 0.05;
 
-/// Depression scale factors of nine patients, before less after a treatment (M. Hollander, D. A. Wolfe, "Nonparametric Statistical Methods", 1973,
-/// p. 29; also on R's help page of `wilcox.test`).
+/// Depression scale factors of nine patients, before less after a treatment (M. Hollander, D. A. Wolfe,
+/// "Nonparametric Statistical Methods", 1973, p. 29; also on R's help page of `wilcox.test`).
 #[cfg(test)]
 const DEPRESSION: [f64; 9] = [0.952, -0.147, 1.022, 0.43, 0.62, 0.59, 0.49, -0.08, 0.01];

@@ -1,12 +1,13 @@
 //! The standard normal distribution.
 
-/// The value that a standard normal variable exceeds with probability 0.025: half the width of a 95 % interval in standard deviations.
+/// The value that a standard normal variable exceeds with probability 0.025: half the width of a 95 %
+/// interval in standard deviations.
 pub const Z_95: f64 = 1.959_963_984_540_054;
 
 /// P(Z ≥ z) of a standard normal variable; relative error below 1e-12 for z up to 37, where it underflows.
 ///
-/// The series of the error function near zero, its continued fraction beyond (M. Abramowitz, I. A. Stegun, "Handbook of Mathematical
-/// Functions", 1964, 26.2.11 and 26.2.14).
+/// The series of the error function near zero, its continued fraction beyond (M. Abramowitz, I. A. Stegun,
+/// "Handbook of Mathematical Functions", 1964, 26.2.11 and 26.2.14).
 pub fn upper_tail(z: f64) -> f64 {
     let tail = match z.abs() {
         x if x < 2.5 => 0.5 - density(x) * series(x),

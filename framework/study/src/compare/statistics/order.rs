@@ -9,9 +9,11 @@ pub fn sorted(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     values
 }
 
-/// The quantile `share` (0..=1) of values in rising order, by linear interpolation between neighbours; `None` for no values.
+/// The quantile `share` (0..=1) of values in rising order, by linear interpolation between neighbours; `None`
+/// for no values.
 ///
-/// R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", The American Statistician 1996, definition 7: that of numpy and R.
+/// R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", The American Statistician 1996,
+/// definition 7: that of numpy and R.
 pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let place = share * sorted.len().checked_sub(1)? as f64;
     let below = place.floor() as usize;
@@ -35,7 +37,8 @@ pub struct BoxPlot {
     pub outliers: Vec<f64>,
 }
 
-/// The box plot of values, the fences measured on the scale of the logarithm, on which it is drawn; `None` for no positive values.
+/// The box plot of values, the fences measured on the scale of the logarithm, on which it is drawn; `None`
+/// for no positive values.
 pub fn log_box_plot(values: impl IntoIterator<Item = f64>) -> Option<BoxPlot> {
     let values = sorted(values.into_iter().filter(|&value| value > 0.0));
     let quartiles = [0.25, 0.5, 0.75].map(|share| quantile(&values, share));
@@ -45,7 +48,8 @@ pub fn log_box_plot(values: impl IntoIterator<Item = f64>) -> Option<BoxPlot> {
     let inside: Vec<f64> = values.iter().filter(is_inside).copied().collect();
     Some(BoxPlot {
         quartiles: [first, middle, third],
-        // A quartile lies between two values, so that the nearest value inside may be beyond it: a whisker never points inwards.
+        // A quartile lies between two values, so that the nearest value inside may be beyond it: a whisker
+        // never points inwards.
         whiskers: [
             inside.first().copied().unwrap_or(first).min(first),
             inside.last().copied().unwrap_or(third).max(third),
@@ -54,7 +58,8 @@ pub fn log_box_plot(values: impl IntoIterator<Item = f64>) -> Option<BoxPlot> {
     })
 }
 
-/// The empirical distribution over `runs` runs, of which these ended at all: each time with the share of all runs that had ended by then.
+/// The empirical distribution over `runs` runs, of which these ended at all: each time with the share of all
+/// runs that had ended by then.
 ///
 /// Runs that never ended keep the curve below 1. Equal times make one step.
 pub fn ecdf(times: impl IntoIterator<Item = f64>, runs: usize) -> Vec<(f64, f64)> {

@@ -5,8 +5,9 @@ use serde::Serialize;
 
 /// How a variant did against the baseline on the same seeds.
 ///
-/// Times are compared where both sides solved the problem; where one side alone did, there is no ratio, and the pair is counted for the test of
-/// solving instead. So "faster" speaks of problems that both can solve, and is to be read beside the other figure.
+/// Times are compared where both sides solved the problem; where one side alone did, there is no ratio, and
+/// the pair is counted for the test of solving instead. So "faster" speaks of problems that both can solve,
+/// and is to be read beside the other figure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Paired {
     /// Seeds that both sides solved.
@@ -19,16 +20,19 @@ pub struct Paired {
     pub neither: usize,
     /// p-value of McNemar's exact test: whether one side solves more.
     pub solved_p: f64,
-    /// Ratio of times, variant to baseline (Hodges-Lehmann on the logarithms); `None` where no seed was solved by both.
+    /// Ratio of times, variant to baseline (Hodges-Lehmann on the logarithms); `None` where no seed was
+    /// solved by both.
     pub ratio: Option<Estimate>,
     /// The signed-rank test on the logarithms of the ratios.
     pub time_test: SignedRank,
-    /// Matched-pairs rank-biserial correlation: -1 where the variant was always faster, 1 where it was always slower.
+    /// Matched-pairs rank-biserial correlation: -1 where the variant was always faster, 1 where it was always
+    /// slower.
     pub effect: f64,
 }
 
 impl Paired {
-    /// Compares times of planning (s, positive; `None` where the problem was not solved), one pair a seed: baseline first.
+    /// Compares times of planning (s, positive; `None` where the problem was not solved), one pair a seed:
+    /// baseline first.
     pub fn of(pairs: &[(Option<f64>, Option<f64>)]) -> Self {
         let count = |baseline: bool, variant: bool| {
             pairs.iter().filter(|(a, b)| (a.is_some(), b.is_some()) == (baseline, variant)).count()

@@ -15,15 +15,18 @@ pub struct SignedRank {
     pub positive: f64,
     /// Sum of the ranks of the negative differences.
     pub negative: f64,
-    /// Two-sided p-value: how likely sums as unequal as these are if either sign is as likely for every difference.
+    /// Two-sided p-value: how likely sums as unequal as these are if either sign is as likely for every
+    /// difference.
     pub p_value: f64,
 }
 
 impl SignedRank {
-    /// Tests paired differences (finite, any order): F. Wilcoxon, "Individual comparisons by ranking methods", Biometrics Bulletin 1945.
+    /// Tests paired differences (finite, any order): F. Wilcoxon, "Individual comparisons by ranking
+    /// methods", Biometrics Bulletin 1945.
     ///
-    /// Equal magnitudes share their mean rank. Up to 60 pairs the p-value is exact, ties included (all 2ⁿ signs are counted, by a sum over
-    /// ranks); beyond, it comes from the normal distribution with the corrections for ties and continuity.
+    /// Equal magnitudes share their mean rank. Up to 60 pairs the p-value is exact, ties included (all 2ⁿ
+    /// signs are counted, by a sum over ranks); beyond, it comes from the normal distribution with the
+    /// corrections for ties and continuity.
     pub fn of(differences: &[f64]) -> Self {
         let mut differences: Vec<f64> = differences.iter().copied().filter(|&d| d != 0.0).collect();
         differences.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
@@ -42,7 +45,8 @@ impl SignedRank {
         Self { pairs: differences.len(), positive, negative, p_value }
     }
 
-    /// The matched-pairs rank-biserial correlation, -1..=1: the share of rank sums that is positive less the share that is negative.
+    /// The matched-pairs rank-biserial correlation, -1..=1: the share of rank sums that is positive less the
+    /// share that is negative.
     ///
     /// D. S. Kerby, "The simple difference formula", Comprehensive Psychology 2014. 0 for no pairs.
     pub fn rank_biserial(&self) -> f64 {
@@ -53,7 +57,8 @@ impl SignedRank {
     }
 }
 
-/// Twice the rank of each magnitude (a mean rank may be half an integer), for differences in rising order of magnitude.
+/// Twice the rank of each magnitude (a mean rank may be half an integer), for differences in rising order of
+/// magnitude.
 fn double_ranks(differences: &[f64]) -> Vec<usize> {
     let same = |a: &f64, b: &f64| a.abs() == b.abs();
     let mut ranks = Vec::with_capacity(differences.len());
@@ -85,7 +90,8 @@ pub(super) fn distribution(ranks: &[usize]) -> Vec<f64> {
     chances
 }
 
-/// The p-value by the normal approximation. The variance Σ rank²/4 of the actual ranks *is* the one corrected for ties.
+/// The p-value by the normal approximation. The variance Σ rank²/4 of the actual ranks *is* the one corrected
+/// for ties.
 fn approximate(ranks: &[usize], smaller: usize) -> f64 {
     let mean = ranks.iter().sum::<usize>() as f64 / 4.0;
     let deviation = ranks.iter().map(|&rank| (rank as f64 / 4.0).powi(2)).sum::<f64>().sqrt();
@@ -104,14 +110,16 @@ mod tests {
         assert!((found.p_value / expected - 1.0).abs() < tolerance, "{found:?}, expected {expected}");
     }
 
-    /// C. Darwin's plants, crossed less self-fertilised, in eighths of an inch (R. A. Fisher, "The Design of Experiments", 1935).
+    /// C. Darwin's plants, crossed less self-fertilised, in eighths of an inch (R. A. Fisher, "The Design of
+    /// Experiments", 1935).
     const DARWIN: [f64; 15] =
         [49.0, -67.0, 8.0, 16.0, 6.0, 23.0, 28.0, 41.0, 14.0, 29.0, 56.0, 24.0, 75.0, 60.0, -48.0];
 
     #[test]
     fn a_published_example() {
-        // M. Hollander, D. A. Wolfe, "Nonparametric Statistical Methods", 1973, p. 29: depression scale factors of nine patients, T+ = 40 (R's
-        // help page of `wilcox.test` has it): one-sided p = 0.01953, so that the two-sided one is 0.03906.
+        // M. Hollander, D. A. Wolfe, "Nonparametric Statistical Methods", 1973, p. 29: depression scale
+        // factors of nine patients, T+ = 40 (R's help page of `wilcox.test` has it): one-sided p = 0.01953,
+        // so that the two-sided one is 0.03906.
         let found = SignedRank::of(&DEPRESSION);
         assert_eq!((found.positive, found.negative, found.pairs), (40.0, 5.0, 9));
         assert_p(&DEPRESSION, 0.039_062_5, 1e-12);
@@ -123,7 +131,8 @@ mod tests {
         // scipy 1.17.1: scipy.stats.wilcoxon(DARWIN, method="exact").
         assert_eq!(SignedRank::of(&DARWIN).negative, 24.0);
         assert_p(&DARWIN, 0.041_259_765_625, 1e-12);
-        // Ties: scipy.stats.wilcoxon(d, method=scipy.stats.PermutationMethod(n_resamples=numpy.inf)) counts all 2¹⁰ signs.
+        // Ties: scipy.stats.wilcoxon(d, method=scipy.stats.PermutationMethod(n_resamples=numpy.inf)) counts
+        // all 2¹⁰ signs.
         assert_p(&[1.0, 1.0, -1.0, 2.0, 2.0, 2.0, -3.0, 4.0, 5.0, 5.0], 0.066_406_25, 1e-12);
         // 80 differences with ties: scipy.stats.wilcoxon(d, method="approx", correction=True).
         let many: Vec<f64> = (0..80).map(|k| f64::from((k * 37) % 23) - 8.5).collect();

@@ -7,11 +7,13 @@ use super::{ALPHA, Estimate, sorted};
 /// Up to this many differences the interval is read from the exact distribution.
 const EXACT: usize = 60;
 
-/// The Hodges-Lehmann estimate of the middle of paired differences: the median of the means of all pairs of them, each with itself too (the
-/// Walsh averages); `None` for no differences. An end of the interval is infinite where 5 or fewer differences can prove nothing.
+/// The Hodges-Lehmann estimate of the middle of paired differences: the median of the means of all pairs of
+/// them, each with itself too (the Walsh averages); `None` for no differences. An end of the interval is
+/// infinite where 5 or fewer differences can prove nothing.
 ///
-/// J. L. Hodges, E. L. Lehmann, "Estimates of location based on rank tests", Annals of Mathematical Statistics 1963. The interval holds those shifts that
-/// the signed-rank test would not refuse (J. W. Tukey's; M. Hollander, D. A. Wolfe, "Nonparametric Statistical Methods", 1973, 3.3).
+/// J. L. Hodges, E. L. Lehmann, "Estimates of location based on rank tests", Annals of Mathematical
+/// Statistics 1963. The interval holds those shifts that the signed-rank test would not refuse (J. W.
+/// Tukey's; M. Hollander, D. A. Wolfe, "Nonparametric Statistical Methods", 1973, 3.3).
 pub fn hodges_lehmann(differences: &[f64]) -> Option<Estimate> {
     let values = sorted(differences.iter().copied());
     let n = values.len();
@@ -26,7 +28,8 @@ pub fn hodges_lehmann(differences: &[f64]) -> Option<Estimate> {
     Some(Estimate { value, low: low.min(value), high: high.max(value) })
 }
 
-/// How many of the ordered averages lie outside of the interval on each side; `None` if even all of them do not reach 95 %.
+/// How many of the ordered averages lie outside of the interval on each side; `None` if even all of them do
+/// not reach 95 %.
 fn skipped(n: usize) -> Option<usize> {
     if n > EXACT {
         let n = n as f64;
@@ -42,7 +45,8 @@ fn skipped(n: usize) -> Option<usize> {
     distribution(&ranks).iter().take_while(|chance| is_rare(chance)).count().checked_sub(1)
 }
 
-/// The Walsh average of rank `k` (from 0) of values in rising order, by bisection: all of them would be n²/2 numbers.
+/// The Walsh average of rank `k` (from 0) of values in rising order, by bisection: all of them would be n²/2
+/// numbers.
 fn walsh(values: &[f64], k: usize) -> f64 {
     let (mut low, mut high) = (values[0], values[values.len() - 1]);
     // Each step halves what is left; after 100 nothing is.
@@ -83,7 +87,8 @@ mod tests {
 
     #[test]
     fn a_published_example() {
-        // Hollander & Wolfe 1973, example 3.1: estimate 0.46 and, by R's `wilcox.test(conf.int = TRUE)`, 95 % interval (0.010, 0.786).
+        // Hollander & Wolfe 1973, example 3.1: estimate 0.46 and, by R's `wilcox.test(conf.int = TRUE)`, 95 %
+        // interval (0.010, 0.786).
         let found = hodges_lehmann(&DEPRESSION).unwrap();
         assert!((found.value - 0.46).abs() < 1e-9, "{found:?}");
         assert!((found.low - 0.01).abs() < 1e-9 && (found.high - 0.786).abs() < 1e-9, "{found:?}");
@@ -111,7 +116,8 @@ mod tests {
             let found = hodges_lehmann(&values).unwrap();
             let shifted = hodges_lehmann(&values.iter().map(|value| value + shift).collect::<Vec<_>>()).unwrap();
             prop_assert!((found.low + shift - shifted.low).abs() < 1e-9 && (found.value + shift - shifted.value).abs() < 1e-9);
-            // What lies well inside is not refused by the signed-rank test, what lies outside is (up to 60 values both are exact).
+            // What lies well inside is not refused by the signed-rank test, what lies outside is (up to 60
+            // values both are exact).
             let p = |at: f64| super::super::SignedRank::of(&values.iter().map(|v| v - at).collect::<Vec<_>>()).p_value;
             if values.len() <= EXACT {
                 prop_assert!(p(found.low - 1e-6) <= ALPHA && p(found.high + 1e-6) <= ALPHA);

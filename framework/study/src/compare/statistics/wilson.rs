@@ -3,10 +3,12 @@
 use super::Estimate;
 use super::normal::Z_95;
 
-/// The proportion `hits / runs` with its 95 % score interval; `None` for no runs. `hits` must not exceed `runs`.
+/// The proportion `hits / runs` with its 95 % score interval; `None` for no runs. `hits` must not exceed
+/// `runs`.
 ///
-/// E. B. Wilson, "Probable inference, the law of succession, and statistical inference", JASA 1927. Unlike the interval that textbooks give it is
-/// right for few runs and at 0 and 1, where a study of planners mostly is.
+/// E. B. Wilson, "Probable inference, the law of succession, and statistical inference", JASA 1927. Unlike
+/// the interval that textbooks give it is right for few runs and at 0 and 1, where a study of planners mostly
+/// is.
 pub fn wilson(hits: usize, runs: usize) -> Option<Estimate> {
     if runs == 0 {
         return None;
@@ -31,7 +33,8 @@ mod tests {
 
     #[test]
     fn published_examples() {
-        // R. G. Newcombe, "Two-sided confidence intervals for the single proportion", Statistics in Medicine 1998, Table I, method 3.
+        // R. G. Newcombe, "Two-sided confidence intervals for the single proportion", Statistics in Medicine
+        // 1998, Table I, method 3.
         assert_interval(81, 263, 0.2553, 0.3662, 5e-5);
         assert_interval(15, 148, 0.0624, 0.1605, 5e-5);
         assert_interval(0, 20, 0.0, 0.1611, 5e-5);

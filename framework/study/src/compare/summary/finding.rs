@@ -5,8 +5,8 @@ use crate::compare::statistics::{ALPHA, Estimate};
 use crate::compare::{Cell, Compared, Figure};
 use std::iter;
 
-/// Fewer pairs than this cannot reach 5 %, whatever they show: even if all point one way, p is `tests` · 2 / 2ⁿ after the correction for as
-/// many tests.
+/// Fewer pairs than this cannot reach 5 %, whatever they show: even if all point one way, p is `tests` · 2 /
+/// 2ⁿ after the correction for as many tests.
 fn fewest_pairs(tests: usize) -> usize {
     (1..64).find(|n| tests as f64 * 2.0 / 2_f64.powi(*n) < ALPHA).map_or(64, |n| n as usize)
 }
@@ -101,7 +101,8 @@ fn counted(compared: &[(&Cell<'_>, &Compared)], name: &dyn Fn(&str) -> String) -
         pair.map(|pair| format!(" (most of all {})", took(pair, name))).unwrap_or_default()
     };
     format!(
-        "of {} other variants {} are shown to be faster{}, {} to be slower{}; for {} no difference in time could be shown",
+        "of {} other variants {} are shown to be faster{}, {} to be slower{}; for {} no difference in time \
+            could be shown",
         compared.len(),
         faster.len(),
         most(faster.first()),

@@ -4,7 +4,8 @@ use crate::compare::statistics::Estimate;
 use crate::compare::{Cell, Figure, RunStatus, StudyScenario, csv};
 use regrasp_api::Slot;
 
-/// The text of `summary.csv`: a head, then a row for each scenario and variant. Numbers have all their digits; what does not exist is empty.
+/// The text of `summary.csv`: a head, then a row for each scenario and variant. Numbers have all their
+/// digits; what does not exist is empty.
 pub fn csv(rows: &[Vec<Cell<'_>>]) -> String {
     let cells = rows.iter().flatten();
     csv::line(head()) + &cells.map(|cell| csv::line(row(cell))).collect::<String>()

@@ -16,7 +16,8 @@ fn only_what_is_shown_is_said() {
     let noise = |key: RunKey| if key.seed.is_multiple_of(2) { 1.01 } else { 0.99 };
     let factor = |key: RunKey| [1.0, 3.0, noise(key)][key.variant];
     let found = findings(&study, &runs(&study, |key| Some(seconds(key) * factor(key))));
-    let expected = "Against rlg (12 of 12 solved, median 15.5 (12.5 to 18.5) ms), slow took 3.00 (3.00 to 3.00) times as long, p < 0.001; no \
+    let expected = "Against rlg (12 of 12 solved, median 15.5 (12.5 to 18.5) ms), slow took 3.00 (3.00 to \
+        3.00) times as long, p < 0.001; no \
                     difference in time could be shown for same. All solved every run.";
     assert_eq!(found, [expected, expected]);
 }
@@ -40,7 +41,8 @@ fn many_variants_are_counted_and_one_alone_is_described() {
     let many = study(&["rlg", "a", "b", "c", "d", "e"]);
     let factor = |key: RunKey| [1.0, 0.25, 0.5, 1.0, 2.0, 4.0][key.variant];
     let found = findings(&many, &runs(&many, |key| Some(seconds(key) * factor(key)))).remove(0);
-    let begin = "of 5 other variants 2 are shown to be faster (most of all a took 0.250 (0.250 to 0.250) times as long, p = 0.002), 2 to be slower \
+    let begin = "of 5 other variants 2 are shown to be faster (most of all a took 0.250 (0.250 to 0.250) \
+        times as long, p = 0.002), 2 to be slower \
                  (most of all e took 4.00 ";
     assert!(
         found.contains(begin) && found.contains("; for 1 no difference in time could be shown"),

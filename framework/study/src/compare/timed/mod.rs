@@ -1,9 +1,11 @@
 //! Who takes the time: plugins and clearance behind wrappers that read the clock.
 //!
-//! Each source of work is charged with its *self time*: its calls less what others took that it called. The wrappers stand where the planner
-//! and its plugins meet, in the [`Request`], so that a call that a plugin makes of itself counts once. Contact models, stability tests, surfaces
-//! and clearance call nobody; of their calls, some of which take less than reading the clock does, only one in [`PERIOD`] is timed and stands
-//! for all. The price, on the scenario `sphere`: 1.0 % more instructions and 1,260 readings of the clock in 4 ms of planning, in all less than 2 %.
+//! Each source of work is charged with its *self time*: its calls less what others took that it called. The
+//! wrappers stand where the planner and its plugins meet, in the [`Request`], so that a call that a plugin
+//! makes of itself counts once. Contact models, stability tests, surfaces and clearance call nobody; of their
+//! calls, some of which take less than reading the clock does, only one in [`PERIOD`] is timed and stands for
+//! all. The price, on the scenario `sphere`: 1.0 % more instructions and 1,260 readings of the clock in 4 ms
+//! of planning, in all less than 2 %.
 
 mod meter;
 mod roles;
@@ -39,7 +41,8 @@ impl<'a, T: ?Sized> Timed<'a, T> {
 
 macro_rules! solve {
     ($([$slot:ident $field:ident $trait:ident] $row:tt)+) => {
-        /// Plans as `request` says, on one thread, and charges the meter with the time of each slot and of clearance.
+        /// Plans as `request` says, on one thread, and charges the meter with the time of each slot and of
+        /// clearance.
         pub(super) fn solve(request: &Request<'_>, meter: &Meter<'_>) -> Result<Outcome, PlanError> {
             $(let $field = Timed::new(request.plugins.$field, meter, Source::Slot(Slot::$slot));)+
             let clearance = Timed::new(request.clearance, meter, Source::Clearance);

@@ -106,7 +106,8 @@ impl Inverse {
         Some(joints)
     }
 
-    /// Levenberg-Marquardt on the whole chain: a driven joint moves with its driver, so no three screws tell the motion.
+    /// Levenberg-Marquardt on the whole chain: a driven joint moves with its driver, so no three screws tell
+    /// the motion.
     fn solve_coupled(&self, chain: &FingerChain, p_HF: &Vec3, near: &FingerJoints) -> Option<[f64; 3]> {
         let tip_jacobian = |q: &[f64; 3]| {
             let mut joints = *near;

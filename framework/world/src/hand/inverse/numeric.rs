@@ -10,7 +10,8 @@ const ACCEPTED: f64 = 1e-10;
 const PERFECT: f64 = 1e-14;
 /// Most steps from one start.
 const STEPS: usize = 60;
-/// Fractions of the joints' ranges at which the search starts anew: the first points of Halton's sequence, after the middle.
+/// Fractions of the joints' ranges at which the search starts anew: the first points of Halton's sequence,
+/// after the middle.
 const STARTS: [[f64; 3]; 9] = [
     [0.5, 0.5, 0.5],
     [0.25, 2.0 / 3.0, 0.4],
@@ -25,8 +26,9 @@ const STARTS: [[f64; 3]; 9] = [
 
 /// Joint positions within the limits that put the fingertip at `p` (m), or `None`.
 ///
-/// The solution that continues from `near` if there is one, otherwise the closest to `near` of those that the other starts
-/// (`rest`, the middle of the ranges, eight spread points) lead to. A solution may be missed, never invented.
+/// The solution that continues from `near` if there is one, otherwise the closest to `near` of those that the
+/// other starts (`rest`, the middle of the ranges, eight spread points) lead to. A solution may be missed,
+/// never invented.
 ///
 /// `tip_jacobian` gives the tip's place (m) and its velocity per speed of each of the three joints.
 pub(super) fn solve(
@@ -49,10 +51,11 @@ pub(super) fn solve(
     best.taken()
 }
 
-/// Levenberg-Marquardt steps from `start`, projected onto the limits (Levenberg 1944; Marquardt, J. SIAM 1963).
+/// Levenberg-Marquardt steps from `start`, projected onto the limits (Levenberg 1944; Marquardt, J. SIAM
+/// 1963).
 ///
-/// A joint at a limit that the gradient pushes outward takes no part in the step. Converges quadratically to a regular
-/// solution, as Newton's method does, since the damping vanishes.
+/// A joint at a limit that the gradient pushes outward takes no part in the step. Converges quadratically to
+/// a regular solution, as Newton's method does, since the damping vanishes.
 fn descend(
     tip_jacobian: &impl Fn(&[f64; 3]) -> (Vec3, Matrix3<f64>),
     p: &Vec3,

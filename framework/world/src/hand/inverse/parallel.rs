@@ -1,9 +1,10 @@
-//! Closed form for three revolute joints of which two neighbours are parallel: abduction and two flexions, in either order.
+//! Closed form for three revolute joints of which two neighbours are parallel: abduction and two flexions, in
+//! either order.
 //!
-//! The pair keeps the tip's coordinate along its direction u, which gives the lone joint's angle; what remains is a planar
-//! arm of two links. Both steps are the equation a cos q + b sin q = c (subproblems of Paden, "Kinematics and control of
-//! robot manipulators", PhD thesis, Berkeley 1986, and Kahan), solved without trigonometric functions; the axes of the lone
-//! joint and the pair may meet or not, at any angle.
+//! The pair keeps the tip's coordinate along its direction u, which gives the lone joint's angle; what
+//! remains is a planar arm of two links. Both steps are the equation a cos q + b sin q = c (subproblems of
+//! Paden, "Kinematics and control of robot manipulators", PhD thesis, Berkeley 1986, and Kahan), solved
+//! without trigonometric functions; the axes of the lone joint and the pair may meet or not, at any angle.
 
 use super::{Choice, JointRange, Triple};
 use crate::hand::screw::{Screw, turn};
@@ -40,7 +41,8 @@ impl Lone {
     }
 }
 
-/// The chain, ready to be solved, in a frame P whose z axis is the pair's direction u and whose origin lies on the lone axis.
+/// The chain, ready to be solved, in a frame P whose z axis is the pair's direction u and whose origin lies
+/// on the lone axis.
 #[derive(Clone, Debug)]
 pub(in crate::hand) struct Parallel {
     lone: Lone,
@@ -105,8 +107,8 @@ impl Parallel {
         best.taken()
     }
 
-    /// The lone joint's angles q within its limits with u · Rot(w, `side` q) v = `height`; `found` is told q and the turned
-    /// vector across u.
+    /// The lone joint's angles q within its limits with u · Rot(w, `side` q) v = `height`; `found` is told q
+    /// and the turned vector across u.
     #[inline]
     fn level(
         &self,
@@ -129,7 +131,8 @@ impl Parallel {
         }
     }
 
-    /// All angles of the pair within the limits that take the point `y` to `z` (m), both seen along u: a planar arm.
+    /// All angles of the pair within the limits that take the point `y` to `z` (m), both seen along u: a
+    /// planar arm.
     #[inline]
     fn solve_pair(
         &self,
@@ -166,8 +169,8 @@ impl Parallel {
 
 /// Sine and cosine of both solutions of a cos q + b sin q = c; `None` if there is none.
 ///
-/// A discriminant that misses zero by a relative 1e-10 or by `slack` counts as zero. Where a = b = c = 0 every angle is a solution and
-/// `near` is taken.
+/// A discriminant that misses zero by a relative 1e-10 or by `slack` counts as zero. Where a = b = c = 0
+/// every angle is a solution and `near` is taken.
 #[inline]
 fn circle(a: f64, b: f64, c: f64, slack: f64, near: f64) -> Option<[(f64, f64); 2]> {
     let square = a * a + b * b;
@@ -189,8 +192,8 @@ fn circle(a: f64, b: f64, c: f64, slack: f64, near: f64) -> Option<[(f64, f64); 
     ])
 }
 
-/// The degenerate case: every angle is a solution, or none. Apart and cold, because inlined the compiler computes the sine
-/// and cosine in every case.
+/// The degenerate case: every angle is a solution, or none. Apart and cold, because inlined the compiler
+/// computes the sine and cosine in every case.
 #[cold]
 #[inline(never)]
 fn any_angle(solvable: bool, near: f64) -> Option<[(f64, f64); 2]> {

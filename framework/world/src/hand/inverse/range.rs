@@ -53,7 +53,8 @@ impl JointRange {
         within.then(|| self.clamp(q))
     }
 
-    /// The position within the limits that has this sine and cosine (up to a common positive factor) and lies closest to `near` (rad).
+    /// The position within the limits that has this sine and cosine (up to a common positive factor) and lies
+    /// closest to `near` (rad).
     #[inline]
     pub fn fit_angle(&self, sin: f64, cos: f64, near: f64) -> Option<f64> {
         let angle = sin.atan2(cos);

@@ -20,10 +20,11 @@ pub(in crate::hand) struct Conditioning {
 
 /// Chooses the joints to solve for.
 ///
-/// The conditioning of three joints is the mean, over 64 fixed random postures, of the smallest singular value of their columns of the
-/// tip's Jacobian, each scaled by half its joint's range (so: how far, in metres, the joints can move the tip in its worst
-/// direction). Of the triples whose conditioning is at least a tenth of the best one's, those with a closed form come first,
-/// then the best conditioned, then the first in the order of the joints.
+/// The conditioning of three joints is the mean, over 64 fixed random postures, of the smallest singular
+/// value of their columns of the tip's Jacobian, each scaled by half its joint's range (so: how far, in
+/// metres, the joints can move the tip in its worst direction). Of the triples whose conditioning is at least
+/// a tenth of the best one's, those with a closed form come first, then the best conditioned, then the first
+/// in the order of the joints.
 pub(super) fn choose(
     chain: &FingerChain,
     ranges: &[JointRange],

@@ -1,4 +1,5 @@
-//! A chain of points on a surface, pulled tight: half the sum of its squared lengths is made least by Newton's method.
+//! A chain of points on a surface, pulled tight: half the sum of its squared lengths is made least by
+//! Newton's method.
 
 use super::Smooth;
 use regrasp_api::{Vec3, any_orthogonal};
@@ -105,10 +106,11 @@ impl Chain {
         next
     }
 
-    /// Newton's step in the tangent planes: blocks 2 I - (g·n) II on the diagonal, -TᵀT beside it, solved from end to end.
+    /// Newton's step in the tangent planes: blocks 2 I - (g·n) II on the diagonal, -TᵀT beside it, solved
+    /// from end to end.
     ///
-    /// g = 2 xᵢ - xᵢ₋₁ - xᵢ₊₁; II is the second fundamental form. Without it (`full` false) the matrix is definite, and convergence linear.
-    /// `None` where the matrix is not definite.
+    /// g = 2 xᵢ - xᵢ₋₁ - xᵢ₊₁; II is the second fundamental form. Without it (`full` false) the matrix is
+    /// definite, and convergence linear. `None` where the matrix is not definite.
     fn newton(&self, surface: &impl Smooth, full: bool) -> Option<[Vec3; LINKS + 1]> {
         let x = &self.0;
         let normals: [Vec3; LINKS + 1] = std::array::from_fn(|i| surface.normal(&x[i]));

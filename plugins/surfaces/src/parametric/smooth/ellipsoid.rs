@@ -60,7 +60,8 @@ impl Smooth for Ellipsoid {
         self.semi_axes.max()
     }
 
-    /// Two arcs of great circles of the squeezed ball that meet on the great circle of equal distance from both ends.
+    /// Two arcs of great circles of the squeezed ball that meet on the great circle of equal distance from
+    /// both ends.
     fn via(&self, a: &Vec3, b: &Vec3, side: usize) -> impl Fn(f64) -> Vec3 {
         let (u, v) = (self.squeezed(a), self.squeezed(b));
         let apart = v - u;

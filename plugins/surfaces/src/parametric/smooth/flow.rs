@@ -1,10 +1,11 @@
 //! The geodesic equation x'' = -κ n, and the spread of neighbouring geodesics.
 
 use super::Smooth;
-use crate::parametric::form::Curve;
+use crate::parametric::curve::Curve;
 use regrasp_api::Vec3;
 
-/// A step's length times the surface's pace: fourth order leaves 2e-7 of the length on flat ellipsoids, else far less.
+/// A step's length times the surface's pace: fourth order leaves 2e-7 of the length on flat ellipsoids, else
+/// far less.
 const STEP: f64 = 0.02;
 
 /// A point of a geodesic and the unit tangent there.
@@ -14,7 +15,8 @@ pub(super) struct Heading {
     pub along: Vec3,
 }
 
-/// The Jacobi field at right angles to a geodesic: how far (m) its points move for each radian that it is turned at its start.
+/// The Jacobi field at right angles to a geodesic: how far (m) its points move for each radian that it is
+/// turned at its start.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spread {
     pub width: f64,

@@ -1,10 +1,12 @@
 //! Smooth surfaces whose geodesics have no elementary form: the geodesic equation, solved between two points.
 //!
-//! Three stages. *Sides*: chains of points through one of several places in the middle between the ends (every path has to pass there)
-//! are measured; on an ellipsoid and on a torus geodesics between two points differ by the side on which they pass (Itoh &
-//! Kiyohara 2004). *Relaxation*: the chains that are shorter than their neighbours are pulled tight by Newton's method (`chain`).
-//! *Shooting*: from a chain's first direction and length the geodesic equation is integrated, and both are corrected by the miss at
-//! the end; how the end moves with the direction is a Jacobi field, integrated along (`flow`). The shortest result is taken.
+//! Three stages. *Sides*: chains of points through one of several places in the middle between the ends
+//! (every path has to pass there) are measured; on an ellipsoid and on a torus geodesics between two points
+//! differ by the side on which they pass (Itoh & Kiyohara 2004). *Relaxation*: the chains that are shorter
+//! than their neighbours are pulled tight by Newton's method (`chain`). *Shooting*: from a chain's first
+//! direction and length the geodesic equation is integrated, and both are corrected by the miss at the end;
+//! how the end moves with the direction is a Jacobi field, integrated along (`flow`). The shortest result is
+//! taken.
 
 mod chain;
 mod ellipsoid;
@@ -14,7 +16,7 @@ mod torus;
 pub(super) use ellipsoid::Ellipsoid;
 pub(super) use torus::Torus;
 
-use super::form::{Curve, Form};
+use super::curve::{Curve, Form};
 use chain::Chain;
 use flow::{Heading, Spread};
 use regrasp_api::Vec3;
@@ -25,14 +27,15 @@ use std::fmt::Debug;
 const SIDES: usize = 16;
 /// Chains that are pulled tight.
 const MOST_CHAINS: usize = 4;
-/// Pulled chains that are longer than the shortest by more than this share are not shot, unless all others miss.
+/// Pulled chains that are longer than the shortest by more than this share are not shot, unless all others
+/// miss.
 const MARGIN: f64 = 0.02;
 /// Shots at an end; three to five are common.
 const SHOTS: usize = 40;
 /// How often a correction is halved before it counts as useless.
 const HALVINGS: usize = 6;
-/// A miss (relative to the object's size) below which the end counts as hit: of first shots with long steps, of
-/// those that are worth a correction, and of the last ones.
+/// A miss (relative to the object's size) below which the end counts as hit: of first shots with long steps,
+/// of those that are worth a correction, and of the last ones.
 const NEAR: f64 = 1e-6;
 const CLOSE: f64 = 1e-3;
 const HIT: f64 = 1e-13;
@@ -42,7 +45,8 @@ const LONG: f64 = 4.0;
 const SAME: f64 = 1e-3;
 /// How many times longer than its chain a geodesic may be.
 const STRETCH: f64 = 1.25;
-/// First directions (rad) tried to either side where the chain's own leads nowhere: their distance, and how many.
+/// First directions (rad) tried to either side where the chain's own leads nowhere: their distance, and how
+/// many.
 const ASIDE: f64 = 0.06;
 const SWEEP: i32 = 8;
 /// Lengths tried then, over the chain's own.
@@ -53,13 +57,15 @@ pub(super) trait Smooth: Send + Sync + Debug {
     /// The outward unit normal at a point.
     fn normal(&self, p: &Vec3) -> Vec3;
 
-    /// How the normal turns on the way along a unit tangent (1/m): the shape operator, positive where the surface bends inwards.
+    /// How the normal turns on the way along a unit tangent (1/m): the shape operator, positive where the
+    /// surface bends inwards.
     fn turning(&self, p: &Vec3, along: &Vec3) -> Vec3;
 
     /// Gaussian curvature (1/m²).
     fn curvature(&self, p: &Vec3) -> f64;
 
-    /// How fast (1/m) the surface changes on the way along a unit tangent: normal, curvature and spread of geodesics.
+    /// How fast (1/m) the surface changes on the way along a unit tangent: normal, curvature and spread of
+    /// geodesics.
     fn pace(&self, p: &Vec3, along: &Vec3) -> f64;
 
     /// The point of the surface for one near it.
@@ -144,7 +150,8 @@ impl<S: Smooth> Gun<'_, S> {
         Shot { along: along.normalize(), length: shot.length + longer }
     }
 
-    /// Corrects direction and length by the miss, less where that does not help; the miss (m) that is left comes along.
+    /// Corrects direction and length by the miss, less where that does not help; the miss (m) that is left
+    /// comes along.
     fn correct(&self, start: Shot) -> (Shot, f64) {
         let (mut shot, mut target) = (start, self.fire(&start));
         for _ in 0..SHOTS {

@@ -13,7 +13,8 @@ pub(in crate::parametric) struct Torus {
     pub tube: f64,
 }
 
-/// The unit vectors away from z, around z and around the tube, the distance from z, and the outward unit normal.
+/// The unit vectors away from z, around z and around the tube, the distance from z, and the outward unit
+/// normal.
 struct Frame {
     around: Vec3,
     upward: Vec3,

@@ -71,7 +71,8 @@ fn jet((a, b): &(Crossing, Crossing), radius: f64, height: f64, at: [f64; 2]) ->
     }
 }
 
-/// The angles at which the shortest path between points of two caps crosses their rims; `height` (m) lies between the rims.
+/// The angles at which the shortest path between points of two caps crosses their rims; `height` (m) lies
+/// between the rims.
 pub(super) fn between(ends: (Crossing, Crossing), radius: f64, height: f64) -> [f64; 2] {
     let mut tried: Vec<(f64, [f64; 2])> = Vec::with_capacity(PLACES * PLACES);
     let angle = |i: usize| 2.0 * PI * i as f64 / PLACES as f64;

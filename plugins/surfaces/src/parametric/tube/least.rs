@@ -5,8 +5,8 @@ const PLACES: usize = 64;
 /// Steps of golden section; each leaves 0.618 of the interval.
 const STEPS: usize = 48;
 
-/// Where a function of an angle (rad) in a range is least, and its value there: places in equal distances and at `kinks`, each that is
-/// lower than its neighbours improved by golden section.
+/// Where a function of an angle (rad) in a range is least, and its value there: places in equal distances and
+/// at `kinks`, each that is lower than its neighbours improved by golden section.
 pub(super) fn least((low, high): (f64, f64), kinks: &[f64], f: impl Fn(f64) -> f64) -> (f64, f64) {
     let mut places: Vec<f64> = (0..=PLACES)
         .map(|i| low + (high - low) * i as f64 / PLACES as f64)

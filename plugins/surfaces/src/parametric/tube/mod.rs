@@ -1,14 +1,15 @@
 //! A cylinder about z with flat or with round caps: helices on the side, chords or great circles on the caps.
 //!
-//! A shortest path consists of at most one helix and one piece on each cap, or, with flat caps, of a chord between two helices. Any other
-//! order can be cut and put together again, pieces turned about z or mirrored at the middle, to one of these with a kink, which can
-//! be shortened. What remains is where the rims are crossed: one or two angles, found by trying many and improving the best.
+//! A shortest path consists of at most one helix and one piece on each cap, or, with flat caps, of a chord
+//! between two helices. Any other order can be cut and put together again, pieces turned about z or mirrored
+//! at the middle, to one of these with a kink, which can be shortened. What remains is where the rims are
+//! crossed: one or two angles, found by trying many and improving the best.
 
 mod crossing;
 mod least;
 mod straight;
 
-use super::form::{Curve, Form};
+use super::curve::{Curve, Form};
 use super::sphere::Sphere;
 use crossing::Crossing;
 use least::least;

@@ -1,7 +1,7 @@
 //! Straight ahead over side and caps.
 
 use super::{Cap, Patch, Tube, azimuth};
-use crate::parametric::form::{Curve, Form};
+use crate::parametric::curve::{Curve, Form};
 use regrasp_api::Vec3;
 
 /// Rims crossed before a walk ends where it is.

@@ -1,0 +1,11 @@
+//! What a local planner made of one problem.
+
+use super::case::Case;
+use regrasp_api::{Path, Reached};
+
+/// What the plugin made of one problem.
+pub(crate) struct Journey {
+    pub case: &'static Case,
+    pub reached: Reached,
+    pub path: Path,
+}

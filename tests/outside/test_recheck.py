@@ -1,0 +1,114 @@
+"""Plans of built-in and random problems, re-checked by other people's programs; planted faults, seen.
+
+Run by itself it takes how many random problems: `test_recheck.py 10000` says how many were solved, wrong, or
+ended in exit 4.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import mutate
+import problems
+from judged import Hand
+from recheck import Recheck
+
+BUILT_IN = [
+    "sphere",
+    "cubic",
+    "ellip-obst",
+    "bracket",
+    "ring",
+    "sphere-five",
+    "sphere-soft",
+    "cube-free",
+    "allegro-ball",
+]
+RANDOM = range(18)
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_built_in_plans(name, regrasp, tmp_path):
+    regrasp("plan", name, "-o", "plan.json", cwd=tmp_path)
+    assert Recheck(json.loads((tmp_path / "plan.json").read_text())).run() == {}
+
+
+@pytest.mark.parametrize("seed", RANDOM)
+def test_random_problems(seed, tmp_path):
+    code, found = solve(seed, tmp_path)
+    assert code in (0, 3) and not found, (code, found)
+
+
+def solve(seed, folder, limit=5):
+    """Plans a random problem: the exit code, and what the re-check finds in the plan."""
+    path = problems.write(folder, seed)
+    words = [
+        os.environ["REGRASP"],
+        "plan",
+        str(path),
+        "--seed",
+        str(seed),
+        "--time-limit",
+        str(limit),
+        "-o",
+        "plan.json",
+    ]
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=120)
+    if done.returncode != 0:
+        return done.returncode, {} if done.returncode == 3 else {"program": done.stderr[-2000:]}
+    return 0, Recheck(json.loads((folder / "plan.json").read_text())).run()
+
+
+@pytest.mark.parametrize("name", ["sphere", "allegro-ball", "cube-free"])
+def test_the_exported_urdf_moves_as_the_plan_s_hand_does(name, regrasp, tmp_path):
+    regrasp("plan", name, "-o", "plan.json", cwd=tmp_path)
+    regrasp("export", "plan.json", "--to", "urdf", "-o", ".", cwd=tmp_path)
+    plan = json.loads((tmp_path / "plan.json").read_text())
+    hand = Hand(plan["scenario"]["problem"]["hand"])
+    # The hand's file is the one with joints that move.
+    models = [pin.buildModelFromUrdf(str(file)) for file in sorted(tmp_path.glob("*.urdf"))]
+    model = max(models, key=lambda model: model.nq)
+    data = model.createData()
+    states = [q for segment in plan["segments"] for q in segment["states"]][::25]
+    for q in states:
+        joints = np.concatenate(q["joints"])
+        hand.place(joints)
+        there = pin.neutral(model)
+        for joint, value in zip(hand.joints, joints):
+            there[model.joints[model.getJointId(joint["name"])].idx_q] = value
+        pin.framesForwardKinematics(model, data, there)
+        for f, finger in enumerate(hand.description["finger"]):
+            tip = data.oMf[model.getFrameId(f"{finger['name']}-tip")].translation
+            assert np.linalg.norm(tip - hand.tip(f)) < 1e-6
+
+
+def test_every_planted_fault_is_seen(regrasp, tmp_path):
+    regrasp("plan", "cube-free", "-o", "plan.json", cwd=tmp_path)
+    plan = json.loads((tmp_path / "plan.json").read_text())
+    assert len(mutate.FAULTS) >= 20 and Recheck(plan).run() == {}
+    assert mutate.unseen(plan) == []
+
+
+def main():
+    counts = Counter()
+    for seed in range(int(sys.argv[1])):
+        with tempfile.TemporaryDirectory() as folder:
+            code, found = solve(seed, Path(folder))
+        counts[f"exit {code}"] += 1
+        counts["wrong"] += bool(found)
+        if found:
+            print(seed, found, flush=True)
+    print(dict(counts))
+    sys.exit(1 if counts["wrong"] else 0)
+
+
+if __name__ == "__main__":
+    main()
