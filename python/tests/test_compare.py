@@ -1,6 +1,10 @@
 """Studies: tables, resuming, parts on a cluster."""
 
 import dataclasses
+import os
+import signal
+import threading
+import time
 
 import pytest
 import regrasp as rg
@@ -64,3 +68,27 @@ def test_a_cluster_makes_the_same_rows(tmp_path) -> None:
         with distributed.Client(cluster) as client:
             there = rg.compare("sphere", VARY, seeds=4, output=tmp_path / "there", client=client, chunks=3)
     pandas.testing.assert_frame_equal(counted(here), counted(there))
+
+
+def test_a_worker_that_dies_costs_its_part_alone(tmp_path) -> None:
+    distributed = pytest.importorskip("distributed")
+    here = rg.compare("cubic", VARY, seeds=4, output=tmp_path / "here")
+    studies: list[rg.Study] = []
+
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+
+            def make() -> None:
+                studies.append(
+                    rg.compare("cubic", VARY, seeds=4, output=tmp_path / "there", client=client, chunks=4)
+                )
+
+            thread = threading.Thread(target=make)
+            thread.start()
+            deadline = time.monotonic() + 20
+            while not any(client.processing().values()) and time.monotonic() < deadline:
+                time.sleep(0.01)
+            victim = next(iter(client.run(os.getpid).values()))
+            os.kill(victim, signal.SIGKILL)
+            thread.join(timeout=60)
+    pandas.testing.assert_frame_equal(counted(here), counted(studies[0]))
