@@ -48,47 +48,55 @@ impl Contact {
     }
 }
 
+/// One contact of a grasp: finger, point and outward normal in O, friction, torsional radius.
+#[derive(Clone, Copy)]
+struct Touch {
+    finger: u8,
+    p_OC: Vec3,
+    n_O: Vec3,
+    mu: f64,
+    gamma: f64,
+}
+
 /// Contacts that hold the object, each with its friction cone.
 #[pyclass(frozen, module = "regrasp", from_py_object)]
 #[derive(Clone)]
 pub struct Grasp {
-    pub fingers: Vec<u8>,
-    pub points: Vec<Vec3>,
-    pub normals: Vec<Vec3>,
-    pub friction: Vec<f64>,
-    pub torsion: Vec<f64>,
-    pub g_O: Vec3,
+    touches: Vec<Touch>,
+    g_O: Vec3,
 }
 
 impl Grasp {
     /// A copy of a grasp; `None` where a cone is not elliptic.
     pub fn copy(grasp: &api::Grasp<'_>) -> Option<Self> {
-        let contacts = grasp.contacts();
-        let mut copy = Self {
-            fingers: contacts.iter().map(|contact| contact.finger.0).collect(),
-            points: contacts.iter().map(|contact| contact.p_OC).collect(),
-            normals: contacts.iter().map(|contact| contact.n_O).collect(),
-            friction: Vec::with_capacity(contacts.len()),
-            torsion: Vec::with_capacity(contacts.len()),
-            g_O: grasp.g_O,
-        };
-        for contact in contacts {
+        let touch = |contact: &GraspContact<'_>| {
             let Cone::Elliptic { mu, gamma } = contact.cone else { return None };
-            copy.friction.push(mu);
-            copy.torsion.push(gamma);
-        }
-        Some(copy)
+            Some(Touch { finger: contact.finger.0, p_OC: contact.p_OC, n_O: contact.n_O, mu, gamma })
+        };
+        let touches = grasp.contacts().iter().map(touch).collect::<Option<_>>()?;
+        Some(Self { touches, g_O: grasp.g_O })
     }
 
     /// The grasp of the contract.
     pub fn grasp(&self) -> api::Grasp<'static> {
         let mut grasp = api::Grasp::new(self.g_O);
-        for (i, &finger) in self.fingers.iter().enumerate() {
-            let cone = Cone::Elliptic { mu: self.friction[i], gamma: self.torsion[i] };
-            let finger = FingerIndex(finger);
-            grasp.push(GraspContact { finger, p_OC: self.points[i], n_O: self.normals[i], cone });
+        for &Touch { finger, p_OC, n_O, mu, gamma } in &self.touches {
+            let cone = Cone::Elliptic { mu, gamma };
+            grasp.push(GraspContact { finger: FingerIndex(finger), p_OC, n_O, cone });
         }
         grasp
+    }
+
+    fn numbers<'py>(&self, py: Python<'py>, of: impl Fn(&Touch) -> f64) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, self.touches.iter().map(of).collect())
+    }
+
+    fn vectors<'py>(
+        &self,
+        py: Python<'py>,
+        of: impl Fn(&Touch) -> Vec3,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        rows(py, &self.touches.iter().map(of).collect::<Vec<_>>())
     }
 }
 
@@ -111,41 +119,38 @@ impl Grasp {
         if !(friction.is_finite() && friction >= 0.0 && torsion.is_finite() && torsion >= 0.0) {
             return Err(PyValueError::new_err("`friction` and `torsion` are finite and not negative"));
         }
-        let contacts: Vec<Contact> =
-            points.into_iter().zip(normals).map(|(p, n)| Contact::new(p, n, 0)).collect::<PyResult<_>>()?;
-        Ok(Self {
-            fingers: (0..count as u8).collect(),
-            points: contacts.iter().map(|contact| contact.0.p_OC).collect(),
-            normals: contacts.iter().map(|contact| contact.0.n_O).collect(),
-            friction: vec![friction; count],
-            torsion: vec![torsion; count],
-            g_O: to_vector("gravity", gravity)?,
-        })
+        let touch = |(finger, (p, n))| {
+            let Contact(contact) = Contact::new(p, n, 0)?;
+            let (p_OC, n_O) = (contact.p_OC, contact.n_O);
+            Ok(Touch { finger, p_OC, n_O, mu: friction, gamma: torsion })
+        };
+        let touches = (0..).zip(points.into_iter().zip(normals)).map(touch).collect::<PyResult<_>>()?;
+        Ok(Self { touches, g_O: to_vector("gravity", gravity)? })
     }
 
     #[getter]
     fn fingers(&self) -> Vec<u8> {
-        self.fingers.clone()
+        self.touches.iter().map(|touch| touch.finger).collect()
     }
 
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        rows(py, &self.points)
+        self.vectors(py, |touch| touch.p_OC)
     }
 
     #[getter]
     fn normals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        rows(py, &self.normals)
+        self.vectors(py, |touch| touch.n_O)
     }
 
     #[getter]
     fn friction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.friction)
+        self.numbers(py, |touch| touch.mu)
     }
 
     #[getter]
     fn torsion<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.torsion)
+        self.numbers(py, |touch| touch.gamma)
     }
 
     #[getter]
@@ -154,7 +159,7 @@ impl Grasp {
     }
 
     fn __len__(&self) -> usize {
-        self.fingers.len()
+        self.touches.len()
     }
 }
 
