@@ -1,4 +1,7 @@
-//! `regrasp hand`: how a URDF is understood, and the hand file that it becomes.
+//! `regrasp hand`: how a robot's file is understood, and the hand file that it becomes.
+
+mod scenario;
+mod xacro;
 
 use crate::numbers::whole;
 use crate::outputs::{self, HAND_MARK, Kind, OverwriteArgs};
@@ -7,54 +10,87 @@ use crate::terminal::printable;
 use crate::{Failure, say, say_json};
 use clap::Args;
 use regrasp::api::{FingerIndex, Hand, HandDescription, JointDescription, Vec3};
-use regrasp::hands::{UrdfHand, UrdfOptions, UrdfReport, read_urdf};
+use regrasp::hands::{HandOptions, HandReport, JointChoice, ReadHand, read_hand, read_urdf_text};
 use regrasp::world::{ChainHand, FingerWorkspace, ObjectPlace, finger_workspace, object_place};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Show how a hand's URDF is understood: fingers, joints, limits, reach, shapes, and what is ignored.
+/// Show how a hand's URDF or MJCF is understood: fingers, joints, limits, reach, shapes, and what is ignored.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-A scenario uses the URDF itself (`[hand] urdf = \"my-hand.urdf\"`, with keys of the same names as the options here) or the hand file that \
-`-o` writes (`[hand] file = \"my-hand.toml\"`), which can be edited. The position that is proposed for an object is a place to start from: \
+A scenario uses the URDF itself (`[hand] urdf = \"my-hand.urdf\"`, with keys of the same names as the \
+ options here) or the hand file that \
+`-o` writes (`[hand] file = \"my-hand.toml\"`), which can be edited. The position that is proposed for an \
+ object is a place to start from: \
 `regrasp plan` tells whether it is a good one.\n\n\
-Examples:\n  regrasp hand my-hand.urdf\n  regrasp hand my-hand.urdf --tips thumb_tip,index_tip,middle_tip,ring_tip --fingertip-radius 0.012\n  \
+Examples:\n  regrasp hand my-hand.urdf\n  regrasp hand my-hand.urdf --tips \
+ thumb_tip,index_tip,middle_tip,ring_tip --fingertip-radius 0.012\n  \
 regrasp hand my-hand.urdf --packages ~/ros/src -o my-hand.toml")]
 pub struct HandArgs {
-    /// A URDF file.
+    /// A URDF or MJCF file, or a xacro file, which `xacro` expands if it is installed.
     pub file: PathBuf,
-    /// The fingertip links, one a finger, in the order in which the fingers are counted; guessed where absent.
+    /// What a xacro file's arguments are, as xacro has them: `NAME:=VALUE`.
+    #[arg(value_name = "NAME:=VALUE")]
+    pub values: Vec<String>,
+    /// The fingertip links, one a finger, in the order in which the fingers are counted; guessed where
+    /// absent.
     #[arg(long, value_name = "LINK,…", value_delimiter = ',')]
     pub tips: Vec<String>,
-    /// Radius of the balls that stand for the fingertips (m); where absent, that of the tip links' own balls.
+    /// Radius of the balls that stand for the fingertips (m); where absent, that of the tip links' own
+    /// balls, or fitted.
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub fingertip_radius: Option<f64>,
-    /// Centre of these balls in the frames of the tip links (m), given once or once for each finger; where absent, they are fitted.
+    /// Centre of these balls in the frames of the tip links (m), given once or once for each finger; where
+    /// absent, they are fitted.
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub tip_offset: Vec<Vec3>,
     /// The link whose frame is the hand's; where absent, the last one that all fingertips hang on.
     #[arg(long, value_name = "LINK")]
     pub palm: Option<String>,
+    /// The posture of an MJCF (a key frame) in which joints stand that no finger has, and in which the
+    /// fingers rest.
+    #[arg(long, value_name = "NAME")]
+    pub keyframe: Option<String>,
     /// A folder that holds packages of `package://` paths; can be repeated.
     #[arg(long, value_name = "DIR")]
     pub packages: Vec<PathBuf>,
-    /// Take each mesh apart into at most this many convex pieces, 1 to 64; by default its convex hull is used.
+    /// Take each mesh apart into at most this many convex pieces, 1 to 64; by default its convex hull is
+    /// used.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<usize, 1, 64>)]
     pub mesh_pieces: Option<usize>,
+    /// What all lengths of the file are multiplied with, such as 0.001 for millimetres.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub scale: Option<f64>,
+    /// What the coordinates of all its meshes are multiplied with.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub mesh_scale: Option<f64>,
+    /// The range of joints (rad): `-0.3..1.6` for those without one, or with a name, `*` standing for any
+    /// letters; can be repeated.
+    #[arg(long, value_name = "[NAME=]LOW..HIGH", value_parser = range, allow_hyphen_values = true)]
+    pub limits: Vec<JointChoice>,
+    /// Where a joint that no finger has stands (rad); can be repeated.
+    #[arg(long, value_name = "NAME=POSITION", value_parser = position)]
+    pub posture: Vec<JointChoice>,
     /// Largest acceleration of every joint (rad/s²); by default what the URDF says, or else 20.
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     pub acceleration: Option<f64>,
-    /// Largest velocity (rad/s) of joints for which the URDF says none, or 0.
-    #[arg(long, value_name = "V", allow_negative_numbers = true)]
-    pub velocity: Option<f64>,
-    /// Largest effort (N·m) of joints for which the URDF says none, or 0.
-    #[arg(long, value_name = "E", allow_negative_numbers = true)]
-    pub effort: Option<f64>,
+    /// Largest velocity (rad/s) of joints for which the file says none, or 0; with a name, of these joints;
+    /// can be repeated.
+    #[arg(long, value_name = "[NAME=]V", allow_hyphen_values = true, value_parser = rate)]
+    pub velocity: Vec<(Option<String>, f64)>,
+    /// Largest effort (N·m) of joints for which the file says none, or 0; with a name, of these joints; can
+    /// be repeated.
+    #[arg(long, value_name = "[NAME=]E", allow_hyphen_values = true, value_parser = rate)]
+    pub effort: Vec<(Option<String>, f64)>,
     /// Propose a position for a ball of this radius (m).
     #[arg(long, value_name = "M", default_value_t = 0.03, allow_negative_numbers = true, value_parser = radius)]
     pub ball: f64,
-    /// Write the hand file, with all meshes in it; `-` is standard output, and the report then goes to standard error.
+    /// Write a scenario with a ball where the fingers surround it best, instead of the hand file.
+    #[arg(long, requires = "output")]
+    pub scenario: bool,
+    /// Write the hand file, with all meshes in it; `-` is standard output, and the report then goes to
+    /// standard error.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -70,6 +106,41 @@ fn point(text: &str) -> Result<Vec3, String> {
     numbers.map(Vec3::from).ok_or_else(|| "it must be three numbers such as 0,0,0.01".into())
 }
 
+/// `name=value`, or a value alone.
+fn rate(text: &str) -> Result<(Option<String>, f64), String> {
+    let (name, value) = match text.rsplit_once('=') {
+        Some((name, value)) => (Some(name.to_owned()), value),
+        None => (None, text),
+    };
+    let value =
+        value.trim().parse().map_err(|_| "it must be a number, or a joint's name, `=` and a number")?;
+    Ok((name, value))
+}
+
+fn position(text: &str) -> Result<JointChoice, String> {
+    match rate(text)? {
+        (Some(name), q) => Ok(JointChoice { name, position: Some(q), ..Default::default() }),
+        (None, _) => Err("it must be a joint's name, `=` and a number".into()),
+    }
+}
+
+fn range(text: &str) -> Result<JointChoice, String> {
+    let (name, range) = text.rsplit_once('=').unwrap_or(("", text));
+    let ends = range.split_once("..").map(|(low, high)| (low.trim().parse(), high.trim().parse()));
+    match ends {
+        Some((Ok(lower), Ok(upper))) => Ok(JointChoice {
+            name: name.into(),
+            lower: Some(lower),
+            upper: Some(upper),
+            ..Default::default()
+        }),
+        _ => {
+            Err("it must be two numbers such as -0.3..1.6, with or without a joint's name and `=` before"
+                .into())
+        }
+    }
+}
+
 fn radius(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(radius) if (1e-3..=1.0).contains(&radius) => Ok(radius),
@@ -78,24 +149,11 @@ fn radius(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(args: &HandArgs) -> Result<(), Failure> {
-    let wished = args.output.as_deref().map(|path| (path, Kind::Hand));
+    let kind = if args.scenario { Kind::Scenario } else { Kind::Hand };
+    let wished = args.output.as_deref().map(|path| (path, kind));
     outputs::check(&[args.file.clone()], wished.as_slice(), args.overwrite)?;
-    let options = UrdfOptions {
-        tips: args.tips.clone(),
-        fingertip_radius: args.fingertip_radius,
-        tip_offset: args.tip_offset.iter().map(|&offset| offset.into()).collect(),
-        palm: args.palm.clone(),
-        packages: args.packages.clone(),
-        mesh_pieces: args.mesh_pieces,
-        acceleration: args.acceleration,
-        velocity: args.velocity,
-        effort: args.effort,
-    };
-    let UrdfHand { description, report } = read_urdf(&args.file, &options).map_err(Failure::refused)?;
+    let ReadHand { description, report } = read(args)?;
     let hand = ChainHand::new(description).map_err(Failure::refused)?;
-    if let Some(path) = &args.output {
-        write(path, hand.description())?;
-    }
     let understood = Understood {
         hand: &hand,
         report: &report,
@@ -103,6 +161,11 @@ pub fn run(args: &HandArgs) -> Result<(), Failure> {
         place: object_place(&hand, args.ball),
         ball: args.ball,
     };
+    if let Some(path) = &args.output {
+        let text =
+            if args.scenario { understood.scenario(args, path)? } else { hand_file(hand.description())? };
+        write(path, &text)?;
+    }
     if args.output.as_deref().is_some_and(outputs::is_standard) {
         // Standard output is the hand file's.
         let _ = std::io::stderr().write_all(printable(&understood.text(None)).as_bytes());
@@ -111,15 +174,74 @@ pub fn run(args: &HandArgs) -> Result<(), Failure> {
     if args.json { say_json(&understood.json()) } else { say(&understood.text(args.output.as_deref())) }
 }
 
+fn read(args: &HandArgs) -> Result<ReadHand, Failure> {
+    let options = options(args);
+    if xacro::is_needed(&args.file) {
+        let text = xacro::expand(&args.file, &args.values, &args.packages)?;
+        return read_urdf_text(&args.file, &text, &options).map_err(Failure::refused);
+    }
+    if let Some(value) = args.values.first() {
+        return Err(Failure::bad_input(format!("`{value}`: only a xacro file takes arguments")));
+    }
+    read_hand(&args.file, &options).map_err(Failure::refused)
+}
+
+fn options(args: &HandArgs) -> HandOptions {
+    let for_all = |rates: &[(Option<String>, f64)]| {
+        rates.iter().rev().find(|(name, _)| name.is_none()).map(|(_, value)| *value)
+    };
+    HandOptions {
+        tips: args.tips.clone(),
+        fingertip_radius: args.fingertip_radius,
+        tip_offset: args.tip_offset.iter().map(|&offset| offset.into()).collect(),
+        palm: args.palm.clone(),
+        keyframe: args.keyframe.clone(),
+        packages: args.packages.clone(),
+        mesh_pieces: args.mesh_pieces,
+        scale: args.scale,
+        mesh_scale: args.mesh_scale,
+        acceleration: args.acceleration,
+        velocity: for_all(&args.velocity),
+        effort: for_all(&args.effort),
+        limits: args.limits.iter().rev().find(|choice| choice.name.is_empty()).and_then(both),
+        joints: joints(args),
+    }
+}
+
+fn both(choice: &JointChoice) -> Option<[f64; 2]> {
+    Some([choice.lower?, choice.upper?])
+}
+
+/// What is given for joints by name.
+fn joints(args: &HandArgs) -> Vec<JointChoice> {
+    let named = |rates: &[(Option<String>, f64)], set: fn(&mut JointChoice, f64)| -> Vec<JointChoice> {
+        let choice = |(name, value): &(Option<String>, f64)| {
+            let mut choice = JointChoice { name: name.clone()?, ..Default::default() };
+            set(&mut choice, *value);
+            Some(choice)
+        };
+        rates.iter().filter_map(choice).collect()
+    };
+    let ranges = args.limits.iter().filter(|choice| !choice.name.is_empty()).cloned();
+    ranges
+        .chain(named(&args.velocity, |choice, value| choice.velocity = Some(value)))
+        .chain(named(&args.effort, |choice, value| choice.effort = Some(value)))
+        .chain(args.posture.iter().cloned())
+        .collect()
+}
+
 fn fingers(hand: &ChainHand) -> impl Iterator<Item = FingerIndex> + use<> {
     (0..hand.finger_count() as u8).map(FingerIndex)
 }
 
-fn write(path: &Path, hand: &HandDescription) -> Result<(), Failure> {
+fn hand_file(hand: &HandDescription) -> Result<String, Failure> {
     let text = toml::to_string(hand).map_err(Failure::bad_input)?;
-    let text = format!("{HAND_MARK}\n{text}");
+    Ok(format!("{HAND_MARK}\n{text}"))
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
     if outputs::is_standard(path) {
-        return say(&text);
+        return say(text);
     }
     regrasp::plan::write_file(path, |out| out.write_all(text.as_bytes())).map_err(Failure::refused)
 }
@@ -127,13 +249,27 @@ fn write(path: &Path, hand: &HandDescription) -> Result<(), Failure> {
 /// A hand and everything that is told about it.
 struct Understood<'a> {
     hand: &'a ChainHand,
-    report: &'a UrdfReport,
+    report: &'a HandReport,
     reach: Vec<FingerWorkspace>,
     place: Option<ObjectPlace>,
     ball: f64,
 }
 
 impl Understood<'_> {
+    /// A scenario to start from, to be written to `output`.
+    fn scenario(&self, args: &HandArgs, output: &Path) -> Result<String, Failure> {
+        let Some(place) = &self.place else {
+            let message = format!(
+                "no place was found at which all fingertips reach a ball of {:.0} mm; give the radius of \
+                 another one (`--ball`)",
+                2e3 * self.ball
+            );
+            return Err(Failure::bad_input(message));
+        };
+        let fingers = self.hand.finger_count();
+        Ok(scenario::text(&args.file, output, &options(args), place, (self.ball, fingers)))
+    }
+
     fn json(&self) -> Value {
         let description = self.hand.description();
         let finger = |(index, reach): (FingerIndex, &FingerWorkspace)| {
@@ -160,7 +296,8 @@ impl Understood<'_> {
         let description = self.hand.description();
         let joints: usize = description.finger.iter().map(|finger| finger.joint.len()).sum();
         let mut text = format!(
-            "{}: {} fingers, {joints} joints, fingertips of {:.1} mm radius; the hand's frame is that of link `{}`\n",
+            "{}: {} fingers, {joints} joints, fingertips of {:.1} mm radius; the hand's frame is that of \
+             link `{}`\n",
             description.name,
             description.finger.len(),
             1e3 * description.fingertip_radius,
@@ -237,7 +374,8 @@ impl Understood<'_> {
         let diameter = 2e3 * self.ball;
         match &self.place {
             Some(ObjectPlace { p_HO, quality }) => format!(
-                "\nthe fingertips surround a ball of {diameter:.0} mm best at\n  position = [{:.3}, {:.3}, {:.3}]   (quality {quality:.2} of 1)\n",
+                "\nthe fingertips surround a ball of {diameter:.0} mm best at\n  position = [{:.3}, {:.3}, \
+                 {:.3}]   (quality {quality:.2} of 1)\n",
                 p_HO.x, p_HO.y, p_HO.z
             ),
             None => format!(

@@ -35,6 +35,8 @@ pub enum Kind {
     Replay,
     /// A hand file.
     Hand,
+    /// A scenario.
+    Scenario,
     /// A file for another program.
     Export,
 }
@@ -48,6 +50,7 @@ impl Kind {
             Kind::Grasps => "file of grasps",
             Kind::Replay => "file of a replay",
             Kind::Hand => "hand file",
+            Kind::Scenario => "scenario",
             Kind::Export => "exported file",
         }
     }
@@ -61,6 +64,7 @@ impl Kind {
             Kind::Grasps => &["\"regrasp-grasps\"", "component.npy"],
             Kind::Replay => &["\"regrasp-replay\""],
             Kind::Hand => &[HAND_MARK],
+            Kind::Scenario => &[SCENARIO_MARK],
             Kind::Export => &["regrasp", "moving_finger.npy"],
         }
     }
@@ -73,6 +77,9 @@ impl Kind {
 
 /// The first line of the hand files that are written.
 pub const HAND_MARK: &str = "# A hand file, written by `regrasp hand`.";
+
+/// The first line of the scenarios that are written.
+pub const SCENARIO_MARK: &str = "# A scenario, written by `regrasp hand`.";
 
 /// Refuses outputs that would destroy something; nothing is written or computed yet.
 pub fn check(inputs: &[PathBuf], outputs: &[(&Path, Kind)], force: OverwriteArgs) -> Result<(), Failure> {

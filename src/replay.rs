@@ -76,9 +76,7 @@ pub fn run(_: &ReplayArgs) -> Result<(), crate::Failure> {
 }
 
 #[cfg(feature = "rapier")]
-pub fn run(args: &ReplayArgs) -> Result<(), crate::Failure> {
-    if args.sweep { sweep::run(args) } else { simulated::run(args) }
-}
+pub use simulated::run;
 
 #[cfg(feature = "rapier")]
 mod simulated;

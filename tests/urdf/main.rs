@@ -6,3 +6,4 @@ mod bad;
 mod desk;
 mod generator;
 mod good;
+mod kinds;

@@ -2,9 +2,10 @@
 
 use crate::error::RobotFault;
 use regrasp_api::{Pose, Vec3};
+use std::collections::BTreeMap;
 
 /// A robot as its file has it.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Robot {
     /// What it is called.
     pub name: String,
@@ -12,8 +13,24 @@ pub struct Robot {
     pub links: Vec<Link>,
     /// Its joints, in the file's order.
     pub joints: Vec<Joint>,
-    /// Names of elements that say nothing about a hand's geometry, such as `transmission`.
-    pub skipped: Vec<String>,
+    /// Pairs of links that never count as touching.
+    pub excluded: Vec<[String; 2]>,
+    /// Postures that the file names.
+    pub key_frames: Vec<KeyFrame>,
+    /// What of the file is not known, or not used although it might have been meant to change the hand: with
+    /// lines, for people.
+    pub remarks: Vec<String>,
+    /// What of the file says nothing that planning needs: with lines, for people.
+    pub ignored: Vec<String>,
+}
+
+/// A posture with a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeyFrame {
+    /// What it is called.
+    pub name: String,
+    /// Where joints stand (rad; m), by name.
+    pub positions: BTreeMap<String, f64>,
 }
 
 /// A rigid body.
@@ -27,6 +44,8 @@ pub struct Link {
     pub collision: Result<Vec<Solid>, RobotFault>,
     /// Shapes that are seen.
     pub visual: Result<Vec<Solid>, RobotFault>,
+    /// Its mass (kg), where the file has it.
+    pub mass: Option<f64>,
 }
 
 /// A geometry with its pose in the link's frame.
@@ -52,6 +71,11 @@ pub enum Geometry {
     Sphere {
         /// Its radius (m).
         radius: f64,
+    },
+    /// An ellipsoid along the axes.
+    Ellipsoid {
+        /// Half its lengths along x, y and z (m).
+        semi_axes: [f64; 3],
     },
     /// A cylinder.
     Cylinder {
@@ -110,12 +134,14 @@ pub struct Joint {
     pub axis: Vec3,
     /// Its limits.
     pub limit: Option<Limit>,
+    /// Limits of its controller.
+    pub soft: Option<Soft>,
     /// What drives it; absent where it moves by itself.
     pub mimic: Option<Mimic>,
 }
 
 /// What `<limit>` says; `None` for an attribute that it lacks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limit {
     /// Its line in the file, counted from 1.
     pub line: usize,
@@ -129,6 +155,17 @@ pub struct Limit {
     pub effort: Option<f64>,
     /// Largest acceleration (rad/s²; m/s²).
     pub acceleration: Option<f64>,
+}
+
+/// Limits of a joint's controller, inside those of the joint; `None` for an attribute that it lacks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Soft {
+    /// Its line in the file, counted from 1.
+    pub line: usize,
+    /// Lowest position (rad; m).
+    pub lower: Option<f64>,
+    /// Highest position (rad; m).
+    pub upper: Option<f64>,
 }
 
 /// q = multiplier · q of the driving joint + offset.

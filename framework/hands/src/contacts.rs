@@ -1,4 +1,5 @@
-//! Which bodies of the hand always touch each other, and a posture in which the others do not: found by sampling.
+//! Which bodies of the hand always touch each other, and a posture in which the others do not: found by
+//! sampling.
 
 use regrasp_api::{
     BodyPair, Clearance, Configuration, FingerIndex, FingerJoints, Hand, HandDescription, ObjectModel,
@@ -28,8 +29,8 @@ pub(crate) struct Contacts {
     pub at_rest: Vec<[String; 2]>,
 }
 
-/// Completes a description whose resting posture is its zero posture: pairs that always touch are excluded, and the fingers rest where
-/// nothing touches, if such a posture is found.
+/// Completes a description whose resting posture is its zero posture: pairs that always touch are excluded,
+/// and the fingers rest where nothing touches, if such a posture is found.
 pub(crate) fn complete(hand: &mut HandDescription) -> Result<Contacts, WorldError> {
     let mut contacts = Contacts::default();
     let scene = Scene::new(hand)?;
@@ -48,7 +49,7 @@ pub(crate) fn complete(hand: &mut HandDescription) -> Result<Contacts, WorldErro
             _ => {}
         }
     }
-    hand.touching = contacts.touching.clone();
+    hand.touching.extend(contacts.touching.iter().cloned());
     let scene = Scene::new(hand)?;
     let (rest, touching) = scene.resting(hand);
     contacts.at_rest = touching.into_iter().map(|pair| named(hand, pair)).collect();
@@ -101,7 +102,8 @@ impl Scene {
         self.clearance.distances(&q, TOUCHING).into_iter().map(|pair| pair.pair).collect()
     }
 
-    /// A posture in which least touches, with what does: the zero posture, the middle of the ranges, or a random one.
+    /// A posture in which least touches, with what does: the zero posture, the middle of the ranges, or a
+    /// random one.
     fn resting(&self, hand: &HandDescription) -> (PerFinger<FingerJoints>, Vec<BodyPair>) {
         let zero = self.posture(|finger, j| hand.finger[finger.index()].rest[j]);
         let middle = self.posture(|finger, j| {

@@ -1,6 +1,6 @@
 //! The fingers that are asked for by name, or else guessed.
 
-use crate::fingers::Fingers;
+use crate::fingers::{FEWEST_JOINTS, Fingers, below, common, independent, unfit};
 use crate::guess;
 use crate::tree::Tree;
 use regrasp_formats::RobotFault as Fault;
@@ -14,7 +14,7 @@ impl Fingers {
     pub fn find(tree: &Tree<'_>, tips: &[String], palm: Option<&str>) -> Result<Self, Fault> {
         let palm = palm.map(|name| tree.link(name).ok_or_else(|| unknown(tree, "palm", name))).transpose()?;
         if !tips.is_empty() {
-            return Self::new(tree, &named(tree, tips)?, palm);
+            return given(tree, &named(tree, tips)?, palm);
         }
         let whole = guess::hand(tree, palm);
         match (whole, palm) {
@@ -22,6 +22,27 @@ impl Fingers {
             (whole, _) => whole,
         }
     }
+}
+
+/// The fingers to these tips; one with too few joints is no finger but stays as a body.
+fn given(tree: &Tree<'_>, tips: &[usize], palm: Option<usize>) -> Result<Fingers, Fault> {
+    let root = palm.unwrap_or_else(|| common(tree, tips));
+    let weak = |tip: usize| {
+        let path = below(tree, root, tip);
+        (independent(tree, &path) < FEWEST_JOINTS).then(|| unfit(tree, &path)).flatten()
+    };
+    let (out, kept): (Vec<usize>, Vec<usize>) = tips.iter().partition(|&&tip| weak(tip).is_some());
+    let left_out = out.iter().filter_map(|&tip| {
+        let name = &tree.link_of(tip).name;
+        Some(format!("`{name}` does not hold: {}; its links stay where they are, as bodies", weak(tip)?))
+    });
+    let left_out: Vec<String> = left_out.collect();
+    if kept.is_empty() {
+        return Err(Fault::of_file(format!("no finger is left: {}", left_out.join("; "))));
+    }
+    // The palm is that of all tips: leaving one out moves no frame.
+    let fingers = Fingers::new(tree, &kept, Some(root))?;
+    Ok(Fingers { left_out, ..fingers })
 }
 
 fn named(tree: &Tree<'_>, tips: &[String]) -> Result<Vec<usize>, Fault> {

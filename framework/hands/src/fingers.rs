@@ -1,5 +1,7 @@
 //! Which links are fingertips, which one is the palm, and the chains of joints between them.
 
+use crate::posture::drive;
+use crate::rank;
 use crate::tree::Tree;
 use regrasp_api::{MAX_FINGER_JOINTS, MAX_FINGERS};
 use regrasp_formats::RobotFault as Fault;
@@ -34,14 +36,16 @@ impl Fingers {
     pub(crate) fn new(tree: &Tree<'_>, tips: &[usize], palm: Option<usize>) -> Result<Self, Fault> {
         if tips.len() > MAX_FINGERS {
             let message = format!(
-                "{} fingertips, at most {MAX_FINGERS} are possible; name the ones to use (`tips`), or the `palm` that they hang on",
+                "{} fingertips, at most {MAX_FINGERS} are possible; name the ones to use (`tips`), or the \
+                 `palm` that they hang on",
                 tips.len()
             );
             return Err(Fault::of_file(message));
         }
         let palm = palm.unwrap_or_else(|| common(tree, tips));
-        let chains = tips.iter().map(|&tip| chain(tree, palm, tip)).collect::<Result<Vec<_>, _>>()?;
+        let mut chains = tips.iter().map(|&tip| chain(tree, palm, tip)).collect::<Result<Vec<_>, _>>()?;
         check_apart(tree, &chains)?;
+        hold_followers(tree, &mut chains);
         Ok(Self { palm, chains, guessed: false, left_out: Vec::new() })
     }
 
@@ -85,25 +89,56 @@ fn chain(tree: &Tree<'_>, palm: usize, tip: usize) -> Result<Chain, Fault> {
     for &joint in &moving {
         check_kind(tree.joint(joint), tip_name)?;
     }
-    let independent = independent(tree, &moving);
     let line = tree.link_of(tip).line;
-    if independent < FEWEST_JOINTS {
+    if let Some(why) = unfit(tree, &path) {
         let message = format!(
-            "the finger to `{tip_name}` has {independent} joints that move by themselves ({} move at all), at least three are needed; name \
-             the fingertips to use (`tips`) to leave it out, it then stays at its zero position",
-            moving.len()
+            "the finger to `{tip_name}`: {why}; name the fingertips to use (`tips`) to leave it out, it \
+             then stays as a body that does not hold"
         );
         return Err(Fault::at(line, message));
     }
     if moving.len() > MAX_FINGER_JOINTS {
         let message = format!(
-            "the finger to `{tip_name}` has {} moving joints, at most {MAX_FINGER_JOINTS} are possible; give a `palm` nearer to it, or make \
+            "the finger to `{tip_name}` has {} moving joints, at most {MAX_FINGER_JOINTS} are possible; \
+             give a `palm` nearer to it, or make \
              some of type fixed",
             moving.len()
         );
         return Err(Fault::at(line, message));
     }
     Ok(Chain { tip, path, moving })
+}
+
+/// Why a chain of joints can be no finger; `None` where it can.
+pub(crate) fn unfit(tree: &Tree<'_>, path: &[usize]) -> Option<String> {
+    let slides = |&&index: &&usize| matches!(tree.joint(index).kind, Kind::Prismatic | Kind::Other);
+    if let Some(&joint) = path.iter().find(slides) {
+        let name = &tree.joint(joint).name;
+        return Some(format!("joint `{name}` is neither revolute nor fixed, and fingers turn"));
+    }
+    let (own, needed) = (independent(tree, path), FEWEST_JOINTS);
+    if own < needed {
+        let all = path.iter().filter(|&&joint| moves(tree.joint(joint))).count();
+        return Some(format!(
+            "{own} of the joints before it move by themselves ({all} move at all), at least {needed} are \
+             needed"
+        ));
+    }
+    let directions = rank::directions(tree, path);
+    (directions < needed).then(|| {
+        let parallel = if directions == 2 { " (its axes are parallel)" } else { "" };
+        format!(
+            "its joints move the tip in {directions} independent directions only{parallel}, {needed} are \
+             needed"
+        )
+    })
+}
+
+/// The joints from a link to a tip below it; all from the root where the tip is not below it.
+pub(crate) fn below(tree: &Tree<'_>, link: usize, tip: usize) -> Vec<usize> {
+    let path = tree.path(tip);
+    let start = path.iter().position(|&joint| tree.parent(joint) == link).unwrap_or(0);
+    path[start..].to_vec()
 }
 
 /// How many of these joints move by themselves.
@@ -119,17 +154,29 @@ fn check_kind(joint: &Joint, tip: &str) -> Result<(), Fault> {
         Kind::Prismatic => Err(Fault::at(
             line,
             format!(
-                "joint `{name}` of the finger to `{tip}` is prismatic; fingers have revolute joints: leave the finger out (`tips`), or make \
+                "joint `{name}` of the finger to `{tip}` is prismatic; fingers have revolute joints: leave \
+                 the finger out (`tips`), or make \
                  the joint fixed"
             ),
         )),
         Kind::Other => Err(Fault::at(
             line,
             format!(
-                "joint `{name}` of the finger to `{tip}` is neither revolute nor fixed; fingers have revolute joints"
+                "joint `{name}` of the finger to `{tip}` is neither revolute nor fixed; fingers have \
+                 revolute joints"
             ),
         )),
     }
+}
+
+/// A joint of a finger that follows one which no finger has does not move: it stands where that one has it.
+fn hold_followers(tree: &Tree<'_>, chains: &mut [Chain]) {
+    let all: Vec<usize> = chains.iter().flat_map(|chain| chain.moving.iter().copied()).collect();
+    let moves = |joint: &usize| match drive(tree, tree.joint(*joint)) {
+        Ok(Some(drive)) => all.contains(&drive.joint),
+        Ok(None) | Err(_) => true,
+    };
+    chains.iter_mut().for_each(|chain| chain.moving.retain(moves));
 }
 
 /// Fingers share no moving joint.
@@ -139,7 +186,8 @@ fn check_apart(tree: &Tree<'_>, chains: &[Chain]) -> Result<(), Fault> {
             if let Some(&joint) = chain.moving.iter().find(|joint| other.moving.contains(joint)) {
                 let joint = tree.joint(joint);
                 let message = format!(
-                    "joint `{}` moves two fingers, to `{}` and to `{}`; fingers must be chains of their own from the palm: make the joint \
+                    "joint `{}` moves two fingers, to `{}` and to `{}`; fingers must be chains of their own \
+                     from the palm: make the joint \
                      fixed, name other fingertips (`tips`), or a `palm` behind it",
                     joint.name,
                     tree.link_of(other.tip).name,

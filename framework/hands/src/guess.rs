@@ -1,11 +1,12 @@
 //! Which links are probably the fingertips and the palm, where nobody says.
 
-use crate::fingers::{FEWEST_JOINTS, Fingers, common, independent, moves};
+use crate::fingers::{FEWEST_JOINTS, Fingers, below, common, moves, unfit};
 use crate::tree::Tree;
 use regrasp_api::Pose;
 use regrasp_formats::RobotFault as Fault;
 
-/// The hand whose fingers end where the file's links end; below `palm`, if it is given. What has too few joints is left out.
+/// The hand whose fingers end where the file's links end; below `palm`, if it is given. What has too few
+/// joints is left out.
 pub(crate) fn hand(tree: &Tree<'_>, palm: Option<usize>) -> Result<Fingers, Fault> {
     let all = ends(tree, palm);
     if all.is_empty() {
@@ -19,19 +20,17 @@ pub(crate) fn hand(tree: &Tree<'_>, palm: Option<usize>) -> Result<Fingers, Faul
     // Without the weak ones, the last link that all hang on may be another one, and the chains shorter.
     loop {
         let root = palm.unwrap_or_else(|| common(tree, &tips));
-        let joints = |&tip: &usize| independent(tree, &below(tree, root, tip));
-        let weak = |tip: &usize| joints(tip) < FEWEST_JOINTS;
-        let (out, kept): (Vec<usize>, Vec<usize>) = tips.iter().partition(|tip| weak(tip));
+        let why = |&tip: &usize| unfit(tree, &below(tree, root, tip));
+        let (out, kept): (Vec<usize>, Vec<usize>) = tips.iter().partition(|&tip| why(tip).is_some());
         if kept.is_empty() {
             return Err(none(tree, &all, root));
         }
-        left_out.extend(out.iter().map(|tip| {
-            format!(
-                "`{}` is no finger: {} of the joints before it move by themselves, at least {FEWEST_JOINTS} are needed; what hangs there stays \
-                 where it is",
+        left_out.extend(out.iter().filter_map(|tip| {
+            Some(format!(
+                "`{}` is no finger: {}; what hangs there stays where it is, as bodies that do not hold",
                 name(tree, *tip),
-                joints(tip)
-            )
+                why(tip)?
+            ))
         }));
         if out.is_empty() {
             let fingers = Fingers::new(tree, &tips, palm)?;
@@ -41,7 +40,8 @@ pub(crate) fn hand(tree: &Tree<'_>, palm: Option<usize>) -> Result<Fingers, Faul
     }
 }
 
-/// Of a file of more than a hand, the hand, if there is one; a fault that names them, if there are more; `None` where there is none.
+/// Of a file of more than a hand, the hand, if there is one; a fault that names them, if there are more;
+/// `None` where there is none.
 pub(crate) fn only_hand(tree: &Tree<'_>) -> Option<Result<Fingers, Fault>> {
     let mut hands: Vec<Fingers> = Vec::new();
     for palm in (0..tree.model.links.len()).filter(|&link| tree.below(link).len() > 1) {
@@ -72,28 +72,25 @@ fn name<'t>(tree: &Tree<'t>, link: usize) -> &'t str {
     &tree.link_of(link).name
 }
 
-/// The joints from a link to a tip below it; all from the root where the tip is not below it.
-fn below(tree: &Tree<'_>, link: usize, tip: usize) -> Vec<usize> {
-    let path = tree.path(tip);
-    let start = path.iter().position(|&joint| tree.parent(joint) == link).unwrap_or(0);
-    path[start..].to_vec()
-}
-
 fn none(tree: &Tree<'_>, ends: &[usize], root: usize) -> Fault {
-    let each =
-        |&tip: &usize| format!("`{}` ({})", name(tree, tip), independent(tree, &below(tree, root, tip)));
+    let each = |&tip: &usize| {
+        let why = unfit(tree, &below(tree, root, tip)).unwrap_or_default();
+        format!("\n  `{}`: {why}", name(tree, tip))
+    };
     let mut all: Vec<String> = ends.iter().take(8).map(each).collect();
     if ends.len() > 8 {
-        all.push("…".into());
+        all.push("\n  …".into());
     }
     Fault::of_file(format!(
-        "nothing in the file can be a finger: at least three joints before a fingertip must move by themselves, without a <mimic>; the ends and \
-         how many they have: {}",
-        all.join(", ")
+        "nothing in the file can be a finger: at least {FEWEST_JOINTS} joints before a fingertip must move \
+         by themselves, so that it can go in \
+         all directions; the ends:{}",
+        all.join("")
     ))
 }
 
-/// One tip for each joint behind which nothing moves: among the ends of what it moves, the one with `tip` in its name, or else the farthest.
+/// One tip for each joint behind which nothing moves: among the ends of what it moves, the one with `tip` in
+/// its name, or else the farthest.
 fn ends(tree: &Tree<'_>, palm: Option<usize>) -> Vec<usize> {
     let mut best: Vec<(usize, (bool, f64), usize)> = Vec::new();
     for leaf in tree.leaves() {

@@ -1,21 +1,16 @@
 //! From the geometries of a URDF to convex shapes of links.
 
+use crate::hulls::Hulls;
 use crate::rods;
 use nalgebra::Point3;
-use regrasp_api::{Mesh, MeshSource, PlacedShape, Pose, PoseDescription, Shape, Vec3};
-use regrasp_formats::Packages;
+use regrasp_api::{Mesh, MeshSource, PlacedShape, Pose, PoseDescription, Primitive, Shape, Vec3};
 use regrasp_formats::RobotFault as Fault;
-use regrasp_formats::{FormatError, Geometry, Link, Solid, read_points};
-use regrasp_world::{convex_hull, convex_pieces};
-use std::collections::BTreeMap;
+use regrasp_formats::{Geometry, Link, Packages, Solid};
+use regrasp_world::convex_hull;
 use std::f64::consts::PI;
-use std::path::PathBuf;
 
 /// Sides of the prism that stands for a cylinder; its edges stand out by 2 % of the radius.
 const SIDES: usize = 16;
-
-/// Meshes reach no farther (m) from their origin.
-const FARTHEST: f64 = 10.0;
 
 /// A convex solid in the frame B of what it belongs to: all points within `radius` of the hull of `corners`.
 #[derive(Clone, Debug)]
@@ -80,17 +75,25 @@ impl Piece {
 /// Reads geometries, each mesh file once.
 #[derive(Debug)]
 pub(crate) struct Shaper {
-    packages: Packages,
-    /// The most convex pieces of a mesh; with 1 its hull is taken.
-    most_pieces: usize,
-    read: BTreeMap<PathBuf, (Vec<Vec3>, Vec<[u32; 3]>)>,
+    hulls: Hulls,
     /// What was done to which link's shapes.
     pub notes: Vec<String>,
 }
 
 impl Shaper {
-    pub fn new(packages: Packages, most_pieces: usize) -> Self {
-        Self { packages, most_pieces, read: BTreeMap::new(), notes: Vec::new() }
+    /// The meshes of the links' collision shapes (visual ones where there are none) are read at once, on all
+    /// processors.
+    pub fn new(packages: Packages, most_pieces: usize, links: &[Link]) -> Self {
+        let used = links.iter().filter_map(|link| match (&link.collision, &link.visual) {
+            (Ok(collision), Ok(visual)) if collision.is_empty() => Some(visual),
+            (Ok(collision), _) => Some(collision),
+            (Err(_), _) => None,
+        });
+        let meshes = used.flatten().filter_map(|solid| match &solid.geometry {
+            Geometry::Mesh { file, scale } => Some((file.as_str(), *scale)),
+            _ => None,
+        });
+        Self { hulls: Hulls::new(packages, most_pieces, meshes), notes: Vec::new() }
     }
 
     /// The convex pieces of a link, in its frame: of `<collision>`, or of `<visual>` where there is none.
@@ -107,15 +110,8 @@ impl Shaper {
         Ok(all)
     }
 
-    /// The convex pieces of a link, with nothing said; none where they cannot be read.
-    pub fn glimpse(&mut self, link: &Link) -> Vec<Piece> {
-        let known = self.notes.len();
-        let pieces = self.pieces(link).unwrap_or_default();
-        self.notes.truncate(known);
-        pieces
-    }
-
-    /// The convex pieces of a link as it is seen, in its frame; none where a mesh of it cannot be read: nothing depends on them alone.
+    /// The convex pieces of a link as it is seen, in its frame; none where a mesh of it cannot be read:
+    /// nothing depends on them alone.
     pub fn seen(&mut self, link: &Link) -> Vec<Piece> {
         let seen = link.visual.as_ref().ok().and_then(|visual| self.all(visual).ok());
         seen.map(|(pieces, _)| pieces).unwrap_or_default()
@@ -153,66 +149,36 @@ impl Shaper {
                 })?;
                 one(Piece::of_mesh(&mesh).moved(&X), &format!("a prism of {SIDES} sides around a cylinder"))
             }
-            Geometry::Mesh { file, scale } => self.mesh(solid, file, Vec3::from(*scale)),
+            Geometry::Ellipsoid { semi_axes } => {
+                let mesh = convex_hull(&ellipsoid(*semi_axes)).ok_or_else(|| {
+                    Fault::at(solid.line, "the ellipsoid is thinner than a micrometre; lengths are in metres")
+                })?;
+                one(Piece::of_mesh(&mesh).moved(&X), "a polytope around an ellipsoid")
+            }
+            Geometry::Mesh { file, scale } => self.mesh(solid, file, *scale),
         }
     }
 
-    fn mesh(&mut self, solid: &Solid, name: &str, scale: Vec3) -> Result<(Vec<Piece>, String), Fault> {
-        let path = self.packages.resolve(name).map_err(|tried| missing(solid.line, name, &tried))?;
-        if !self.read.contains_key(&path) {
-            let raw = read_points(&path).map_err(|error| match error {
-                FormatError::File { path, reason, .. } => {
-                    Fault::at(solid.line, format!("cannot read the mesh `{}`: {reason}", path.display()))
-                }
-                other => Fault::at(solid.line, other.to_string()),
-            })?;
-            let count = raw.0.len() as u32;
-            if count == 0 || raw.1.iter().flatten().any(|&vertex| vertex >= count) {
-                let message =
-                    format!("the mesh `{}` has no facets, or names corners that it lacks", path.display());
-                return Err(Fault::at(solid.line, message));
-            }
-            self.read.insert(path.clone(), raw);
-        }
-        let (points, facets) = &self.read[&path];
-        let points: Vec<Vec3> = points.iter().map(|p| p.component_mul(&scale)).collect();
-        if !points.iter().all(|p| p.norm() < FARTHEST) {
-            let reach = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
-            let message = format!(
-                "the mesh `{}` reaches {reach:.1} m from its origin, no hand is as large; is it in millimetres? then write \
-                 scale=\"0.001 0.001 0.001\"",
-                path.display()
-            );
-            return Err(Fault::at(solid.line, message));
-        }
-        let parts =
-            if self.most_pieces > 1 { convex_pieces(&points, facets, self.most_pieces) } else { Vec::new() };
-        let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let (pieces, what) = match (parts.len(), convex_hull(&points)) {
-            (count @ 2.., _) => (parts, format!("{count} convex pieces of {file} ({} facets)", facets.len())),
-            (_, Some(whole)) => (vec![whole], format!("the convex hull of {file} ({} facets)", facets.len())),
-            (_, None) => {
-                return Ok((
-                    vec![boxed(&points, &solid.X_LS)],
-                    format!("the box around {file}, which is flat"),
-                ));
-            }
+    fn mesh(&mut self, solid: &Solid, name: &str, scale: [f64; 3]) -> Result<(Vec<Piece>, String), Fault> {
+        let convex = self.hulls.of(name, scale).map_err(|reason| Fault::at(solid.line, reason))?;
+        let pieces = match convex.flat {
+            Some(corners) => vec![boxed(corners, &solid.X_LS)],
+            None => convex.parts.iter().map(|mesh| Piece::of_mesh(mesh).moved(&solid.X_LS)).collect(),
         };
-        Ok((pieces.iter().map(|mesh| Piece::of_mesh(mesh).moved(&solid.X_LS)).collect(), what))
+        Ok((pieces, convex.what.clone()))
     }
 }
 
-/// The box along the axes around points, at least a micrometre thick: its lowest and highest corner.
-pub(crate) fn around(points: &[Vec3]) -> (Vec3, Vec3) {
-    let low = points.iter().copied().reduce(|a, b| a.inf(&b)).unwrap_or_default();
-    let high = points.iter().copied().reduce(|a, b| a.sup(&b)).unwrap_or_default();
-    (low - Vec3::repeat(1e-6), high + Vec3::repeat(1e-6))
-}
-
-fn boxed(points: &[Vec3], X: &Pose) -> Piece {
-    let (low, high) = around(points);
+fn boxed((low, high): (Vec3, Vec3), X: &Pose) -> Piece {
     let half = (high - low) / 2.0;
     Piece::cuboid(half, X * Pose::translation(low.x + half.x, low.y + half.y, low.z + half.z))
+}
+
+/// Points of an ellipsoid, dense enough that their hull stays within 1 % of it.
+fn ellipsoid(semi_axes: [f64; 3]) -> Vec<Vec3> {
+    let mesh = regrasp_world::primitive_mesh(&Primitive::Sphere { radius: 1.0 }, 320);
+    let unit = mesh.map(|mesh| mesh.vertices().to_vec()).unwrap_or_default();
+    unit.into_iter().map(|v| v.component_mul(&Vec3::from(semi_axes)) * 1.005).collect()
 }
 
 /// The corners of a prism about z around a cylinder.
@@ -224,14 +190,4 @@ fn prism(radius: f64, length: f64) -> Vec<Vec3> {
         Vec3::new(outer * cos, outer * sin, z * length)
     };
     (0..2 * SIDES).map(corner).collect()
-}
-
-fn missing(line: usize, name: &str, tried: &[PathBuf]) -> Fault {
-    let tried: Vec<String> = tried.iter().take(4).map(|path| format!("`{}`", path.display())).collect();
-    let fix = if name.contains("://") {
-        "; give the folder that holds the package (`packages` under `[hand]`, `--packages` on the command line)"
-    } else {
-        ""
-    };
-    Fault::at(line, format!("the mesh `{name}` is not there; looked at {}{fix}", tried.join(", ")))
 }

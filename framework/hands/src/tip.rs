@@ -1,21 +1,27 @@
 //! The ball that stands for a fingertip: where its centre lies, and what of the link it replaces.
 
-use crate::fingers::{Chain, Fingers};
-use crate::solids::{Piece, Shaper, around};
+use crate::ball::{self, Ball, CAP};
+use crate::fingers::Fingers;
+use crate::hulls::around;
+use crate::solids::Piece;
 use crate::tree::Tree;
 use regrasp_api::{Pose, Shape, Vec3, any_orthogonal};
-use regrasp_formats::RobotFault as Fault;
 use regrasp_formats::{Geometry, Link};
 use std::f64::consts::{PI, TAU};
 
-/// The clearance (m) that planning keeps by default: a link that is thinner than the ball by less touches the object beside the ball.
+/// The clearance (m) that planning keeps by default: a link that is thinner than the ball by less touches
+/// the object beside the ball.
 pub(crate) const CLEARANCE: f64 = 5e-4;
-/// A ball that can touch flat faces up to this angle (rad) from the finger's direction, however they are turned, is free enough.
+/// A ball that can touch flat faces up to this angle (rad) from the finger's direction, however they are
+/// turned, is free enough.
 const FREE: f64 = 75.0 * PI / 180.0;
+/// Steps (m) in which a last link is cut back.
+const CUT: f64 = 5e-4;
 /// Directions about the finger that are looked at.
 const TURNS: usize = 24;
 
-/// The ball's centre in the last link's frame L (m), the direction in which the finger ends, and how both were found.
+/// The ball's centre in the last link's frame L (m), the direction in which the finger ends, and how both
+/// were found.
 #[derive(Clone, Debug)]
 pub(crate) struct Tip {
     pub center: Vec3,
@@ -38,48 +44,57 @@ fn own_radius(link: &Link) -> Option<f64> {
     }
 }
 
-/// The radius (m) of the tip links' own balls, all equal; else a fault that suggests one.
-pub(crate) fn common_radius(tree: &Tree<'_>, fingers: &Fingers, shaper: &mut Shaper) -> Result<f64, Fault> {
-    let tips = || fingers.chains.iter().map(|chain| tree.link_of(chain.tip));
-    let radii: Vec<Option<f64>> = tips().map(own_radius).collect();
-    let first = radii[0].filter(|first| (1e-4..=0.2).contains(first));
-    let same = |first: f64| radii.iter().all(|r| r.is_some_and(|r| (r - first).abs() < 1e-6));
-    if let Some(radius) = first.filter(|&first| same(first)) {
-        return Ok(radius);
+/// The radius (m) of the tip links' own balls, if they are all equal.
+pub(crate) fn own_balls(tree: &Tree<'_>, fingers: &Fingers) -> Option<f64> {
+    let radii: Vec<Option<f64>> =
+        fingers.chains.iter().map(|chain| own_radius(tree.link_of(chain.tip))).collect();
+    let first = radii[0].filter(|first| (1e-4..=0.2).contains(first))?;
+    let same = radii.iter().all(|r| r.is_some_and(|r| (r - first).abs() < 1e-6));
+    same.then_some(first)
+}
+
+/// The shapes at the end of a finger, in the last link's frame, and the direction in which it ends there.
+pub(crate) struct End {
+    pub name: String,
+    pub pieces: Vec<Piece>,
+    pub outward: Vec3,
+}
+
+/// A radius (m, a multiple of 0.1 mm) that fits the ends of all fingers: the median of the balls that fit
+/// each; or why there is none, with one that may do.
+pub(crate) fn fitted_radius(ends: &[End]) -> Result<f64, (String, f64)> {
+    let balls: Vec<Option<Ball>> =
+        ends.iter().map(|end| ball::fit(&end.pieces, &end.outward, None).filter(Ball::is_fit)).collect();
+    let mut radii: Vec<f64> = balls.iter().flatten().map(|ball| ball.radius).collect();
+    radii.sort_by(f64::total_cmp);
+    let tenths = |radius: f64| (radius * 1e4).round() / 1e4;
+    if let (Some(&radius), true) = (radii.get(radii.len() / 2), 2 * radii.len() > ends.len()) {
+        return Ok(tenths(radius));
     }
-    // A tip link without a shape is a name for the end of the link before.
-    let shape = |chain: &Chain| {
-        let links = [Some(chain.tip), chain.path.last().map(|&joint| tree.parent(joint))];
-        links
-            .into_iter()
-            .flatten()
-            .map(|link| shaper.glimpse(tree.link_of(link)))
-            .find(|pieces| !pieces.is_empty())
-    };
-    let half = |pieces: Vec<Piece>| {
-        let corners: Vec<Vec3> = pieces.iter().flat_map(Piece::spread).collect();
+    let half = |end: &End| {
+        let corners: Vec<Vec3> = end.pieces.iter().flat_map(Piece::spread).collect();
         let (low, high) = around(&corners);
         ((high - low) / 2.0).min()
     };
-    let thin = fingers.chains.iter().filter_map(shape).map(half).fold(f64::INFINITY, f64::min);
+    let thin = ends.iter().filter(|end| !end.pieces.is_empty()).map(half).fold(f64::INFINITY, f64::min);
     let hint = if (1e-3..=0.2).contains(&thin) {
-        format!("; their shapes suggest about {:.4}", thin)
+        format!("; their shapes suggest about {thin:.4}")
     } else {
         String::new()
     };
-    let names: Vec<String> = tips().map(|tip| format!("`{}`", tip.name)).collect();
-    Err(Fault::of_key(
-        "fingertip_radius",
-        format!(
-            "the fingertips ({}) are not balls of one radius: give `fingertip_radius`, the radius (m) of the balls that are to stand for them{hint}",
-            names.join(", ")
-        ),
-    ))
+    let names: Vec<String> = ends.iter().map(|end| format!("`{}`", end.name)).collect();
+    let why = format!(
+        "the fingertips ({}) are not balls of one radius, and no ball fits the ends of most: give \
+         `fingertip_radius`, the radius (m) of the balls \
+         that are to stand for them{hint}",
+        names.join(", ")
+    );
+    Err((why, if (1e-3..=0.2).contains(&thin) { thin } else { 0.01 }))
 }
 
 impl Tip {
-    /// `own`: the tip link's shapes; `all`: those of everything that moves with it, both in L. `offset`: the centre as given, in the tip
-    /// link's frame (m).
+    /// `own`: the tip link's shapes; `all`: those of everything that moves with it, both in L. `offset`: the
+    /// centre as given, in the tip link's frame (m).
     pub fn new(
         X_LTip: &Pose,
         offset: Option<[f64; 3]>,
@@ -123,13 +138,73 @@ impl Tip {
         }
     }
 
-    /// What remains of the last link's shapes beside the ball: what lies beyond the ball's centre, where the finger ends there, is cut off.
+    /// The ball of this radius (m) that fits the end of the shapes, for fingers that nobody said more of; as
+    /// it was where none fits.
+    ///
+    /// The tip's frame stays the centre where it lies about a radius before the end.
+    pub fn fitted(self, end: &End, radius: f64) -> Self {
+        let n = end.outward;
+        let most = end.pieces.iter().map(|piece| piece.reach(&n)).fold(f64::NEG_INFINITY, f64::max);
+        let before = most - n.dot(&self.center);
+        if self.is_ball || (before - radius).abs() < 0.5 * radius && self.how.starts_with("the origin") {
+            return self;
+        }
+        match ball::fit(&end.pieces, &n, Some(radius)) {
+            Some(ball) => Self {
+                center: ball.center,
+                outward: n,
+                how: format!(
+                    "fitted: the shape departs from a ball of {:.1} mm by up to {:.1} mm within {:.0}° of \
+                     the finger's direction",
+                    1e3 * radius,
+                    1e3 * ball.error,
+                    CAP.to_degrees()
+                ),
+                is_ball: false,
+            },
+            None => self,
+        }
+    }
+
+    /// The shapes cut back behind the ball as far as it takes for the ball to touch first up to [`FREE`], by
+    /// at most its radius; a thinner rod stands for what was cut. For balls that were fitted to the shape
+    /// that they stand for.
+    pub fn freed(&self, pieces: &[Piece], radius: f64, notes: &mut Vec<String>, name: &str) -> Vec<Piece> {
+        let steps = (radius / CUT) as usize;
+        let mut best = (self.free(pieces, radius), 0.0, pieces.to_vec());
+        for back in (1..=steps).map(|step| CUT * step as f64) {
+            if best.0 >= FREE {
+                break;
+            }
+            let height = self.outward.dot(&self.center) - back;
+            let cut = |piece: &Piece| below(piece.clone(), &self.outward, height);
+            let mut kept: Vec<Piece> = pieces.iter().filter_map(cut).collect();
+            let ends = [self.center, self.center - self.outward * back];
+            kept.push(Piece::capsule(ends, (radius - CLEARANCE - 1e-4).max(1e-4)));
+            let free = self.free(&kept, radius);
+            if free > best.0 {
+                best = (free, back, kept);
+            }
+        }
+        if best.1 > 0.0 {
+            notes.push(format!(
+                "the last link of `{name}` is cut {:.1} mm behind the ball's centre, so that its ball \
+                 touches first; a rod stands for the rest",
+                1e3 * best.1
+            ));
+        }
+        best.2
+    }
+
+    /// What remains of the last link's shapes beside the ball: what lies beyond the ball's centre, where the
+    /// finger ends there, is cut off.
     pub fn cut(&self, pieces: Vec<Piece>, radius: f64, notes: &mut Vec<String>, name: &str) -> Vec<Piece> {
         let height = self.outward.dot(&self.center);
         let most = pieces.iter().map(|piece| piece.reach(&self.outward)).fold(f64::NEG_INFINITY, f64::max);
         if most > height + 1.5 * radius {
             notes.push(format!(
-                "the last link of `{name}` goes on for {:.1} mm beyond the ball of its tip; is the tip's frame where the finger ends?",
+                "the last link of `{name}` goes on for {:.1} mm beyond the ball of its tip; is the tip's \
+                 frame where the finger ends?",
                 1e3 * (most - height - radius)
             ));
             return pieces;
@@ -139,8 +214,10 @@ impl Tip {
         let free = self.free(&kept, radius);
         if free < FREE {
             notes.push(format!(
-                "the last link of `{name}` is wide beside the ball of its tip ({:.1} mm): on flat faces, unless they are within {:.0}° of the finger's \
-                 direction, the link can come to touch first, so that boxes may be hard to turn; tips with a thicker cap, `fingertip_radius` = \
+                "the last link of `{name}` is wide beside the ball of its tip ({:.1} mm): on flat faces, \
+                 unless they are within {:.0}° of the finger's \
+                 direction, the link can come to touch first, so that boxes may be hard to turn; tips with \
+                  a thicker cap, `fingertip_radius` = \
                  {:.4}, allow {:.0}°",
                 1e3 * radius,
                 free.to_degrees(),
@@ -151,8 +228,8 @@ impl Tip {
         kept
     }
 
-    /// Up to which angle (rad, at most π/2) from the finger's direction the ball touches a flat face before the link does, however the face
-    /// is turned about the finger.
+    /// Up to which angle (rad, at most π/2) from the finger's direction the ball touches a flat face before
+    /// the link does, however the face is turned about the finger.
     pub fn free(&self, pieces: &[Piece], radius: f64) -> f64 {
         let degrees = (1..=90).map(|degree| f64::from(degree).to_radians());
         degrees.take_while(|&angle| self.wide_at(pieces, angle) <= radius).last().unwrap_or(0.0)
@@ -163,8 +240,8 @@ impl Tip {
         (0..=16).map(|i| self.wide_at(pieces, angle * f64::from(i) / 16.0)).fold(0.0, f64::max)
     }
 
-    /// How far (m) the pieces with what planning keeps around them reach from the ball's centre, in the farthest direction at an angle
-    /// (rad) from the finger's.
+    /// How far (m) the pieces with what planning keeps around them reach from the ball's centre, in the
+    /// farthest direction at an angle (rad) from the finger's.
     fn wide_at(&self, pieces: &[Piece], angle: f64) -> f64 {
         let across = any_orthogonal(&self.outward);
         let other = self.outward.cross(&across);
@@ -178,7 +255,7 @@ impl Tip {
 }
 
 /// The direction from the last joint to the tip, or where both coincide to the middle of the shapes.
-fn outward(center: &Vec3, all: &[Piece]) -> Vec3 {
+pub(crate) fn outward(center: &Vec3, all: &[Piece]) -> Vec3 {
     let direction = center.try_normalize(1e-4);
     direction.or_else(|| middle(all).try_normalize(1e-4)).unwrap_or_else(Vec3::z)
 }
@@ -192,7 +269,8 @@ fn middle(pieces: &[Piece]) -> Vec3 {
     (low + high) / 2.0
 }
 
-/// The ball of the given radius that touches the far end of the shapes from within, in the middle of what is there.
+/// The ball of the given radius that touches the far end of the shapes from within, in the middle of what is
+/// there.
 fn fit(own: &[Piece], radius: f64) -> (Vec3, Vec3) {
     let outward = middle(own).try_normalize(1e-4).unwrap_or_else(Vec3::z);
     let end = own.iter().map(|piece| piece.reach(&outward)).fold(f64::NEG_INFINITY, f64::max);

@@ -22,8 +22,83 @@ pub fn convex_hull(points: &[Vec3]) -> Option<Mesh> {
     Mesh::new(vertices.iter().map(|v| Vec3::new(v.x, v.y, v.z)).collect(), facets).ok()
 }
 
-/// Approximate convex pieces of a mesh, at most `most` (K. Mamou, "Volumetric hierarchical approximate convex decomposition", in Game Engine
-/// Gems 3, 2016).
+/// Hulls of at most as many corners stay as they are.
+const FEW: usize = 48;
+/// The most corners of a coarse hull.
+const MANY: usize = 160;
+
+/// The convex hull by few of its corners, and how far (m) the true one stands out of it: at most
+/// `tolerance`, unless that takes more than 160 corners. `None` where the points have no volume.
+pub fn coarse_hull(points: &[Vec3], tolerance: f64) -> Option<(Mesh, f64)> {
+    let whole = convex_hull(&outer(points))?;
+    let all = whole.vertices();
+    if all.len() <= FEW {
+        return Some((whole, 0.0));
+    }
+    let mut chosen: Vec<Vec3> = extremes(all, 1);
+    loop {
+        let coarse = convex_hull(&chosen)?;
+        let planes = planes(&coarse);
+        let mut out: Vec<(f64, Vec3)> = all.iter().map(|p| (beyond(&planes, p), *p)).collect();
+        out.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let worst = out[0].0.max(0.0);
+        if worst <= tolerance || chosen.len() >= MANY {
+            return Some((coarse, worst));
+        }
+        // A few at a time, no two of them close together: one corner takes care of what lies about it.
+        let mut added: Vec<Vec3> = Vec::new();
+        for (depth, p) in out.into_iter().take_while(|(depth, _)| *depth > tolerance) {
+            let apart = 8.0 * depth.max(tolerance);
+            if added.iter().all(|other| (other - p).norm() > apart) {
+                added.push(p);
+            }
+            if added.len() == 8 {
+                break;
+            }
+        }
+        chosen.extend(added);
+    }
+}
+
+/// The points that can be corners of the hull: those inside a hull of a few extreme ones are left out.
+fn outer(points: &[Vec3]) -> Vec<Vec3> {
+    if points.len() < 500 {
+        return points.to_vec();
+    }
+    let Some(inner) = convex_hull(&extremes(points, 2)) else { return points.to_vec() };
+    let planes = planes(&inner);
+    points.iter().filter(|p| beyond(&planes, p) > -GRID).copied().collect()
+}
+
+/// The points that lie farthest in the directions of a cube's surface, a grid of 2 · `half` + 1 points to an
+/// edge (26 or 98 in all).
+fn extremes(points: &[Vec3], half: i32) -> Vec<Vec3> {
+    let steps = || -half..=half;
+    let directions = steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
+    let on_the_cube = directions.filter(|n: &[i32; 3]| n.iter().any(|x| x.abs() == half));
+    let farthest = |n: [i32; 3]| {
+        let n = Vec3::from(n.map(f64::from));
+        points.iter().copied().max_by(|a, b| a.dot(&n).total_cmp(&b.dot(&n)))
+    };
+    on_the_cube.filter_map(farthest).collect()
+}
+
+/// Unit normals and heights of a mesh's facets.
+fn planes(mesh: &Mesh) -> Vec<(Vec3, f64)> {
+    let plane = |facet: u32| {
+        let n = mesh.normal(facet);
+        (n, n.dot(&mesh.corners(facet)[0]))
+    };
+    (0..mesh.facets().len() as u32).map(plane).collect()
+}
+
+/// By how much (m) a point stands out of the planes; negative inside.
+fn beyond(planes: &[(Vec3, f64)], p: &Vec3) -> f64 {
+    planes.iter().map(|(n, height)| n.dot(p) - height).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Approximate convex pieces of a mesh, at most `most` (K. Mamou, "Volumetric hierarchical approximate
+/// convex decomposition", in Game Engine Gems 3, 2016).
 pub fn convex_pieces(vertices: &[Vec3], facets: &[[u32; 3]], most: usize) -> Vec<Mesh> {
     let points: Vec<Vector> = vertices.iter().map(|v| Vector::new(v.x, v.y, v.z)).collect();
     let parameters = VHACDParameters { max_convex_hulls: most as u32, ..Default::default() };
@@ -50,6 +125,24 @@ mod tests {
         let volume: f64 = mesh.mass_properties().volume;
         assert!((volume - 8e-6).abs() < 1e-12, "{volume}");
         assert!(mesh.is_locally_convex());
+    }
+
+    #[test]
+    fn a_coarse_hull_stays_within_its_tolerance_and_keeps_the_corners_of_a_box() {
+        let ball: Vec<Vec3> = (0..4000)
+            .map(|i| {
+                let (z, turn) = (1.0 - 2.0 * (f64::from(i) + 0.5) / 4000.0, 2.399_963 * f64::from(i));
+                let r = (1.0 - z * z).sqrt();
+                Vec3::new(r * turn.cos(), r * turn.sin(), z) * 0.008
+            })
+            .collect();
+        let (coarse, error) = coarse_hull(&ball, 2e-4).unwrap();
+        assert!(error <= 2e-4 && coarse.vertices().len() <= 168, "{error} {}", coarse.vertices().len());
+        let planes = planes(&coarse);
+        let worst = ball.iter().map(|p| beyond(&planes, p)).fold(0.0, f64::max);
+        assert!((worst - error).abs() < 1e-9, "{worst} {error}");
+        let (whole, error) = coarse_hull(&cube(), 1e-4).unwrap();
+        assert_eq!((whole.vertices().len(), error), (8, 0.0));
     }
 
     #[test]

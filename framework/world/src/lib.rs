@@ -12,6 +12,6 @@ pub use error::WorldError;
 pub use hand::{
     ChainHand, FingerWorkspace, HandError, LinkFrame, LinkFrames, ObjectPlace, finger_workspace, object_place,
 };
-pub use hull::{convex_hull, convex_pieces};
+pub use hull::{coarse_hull, convex_hull, convex_pieces};
 pub use object::{load_object, object_of_mesh, primitive_mesh};
 pub use scene::{World, check_limits, check_problem, check_units};

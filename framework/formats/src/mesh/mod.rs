@@ -20,8 +20,8 @@ type Raw = (Vec<Vec3>, Vec<[u32; 3]>);
 
 /// The mesh of `source`, in metres; a file is looked for relative to the folder `base`.
 ///
-/// Vertices of a file at equal coordinates are merged, and vertices that no facet uses are dropped. `key` is the path of
-/// the source in its description, for messages.
+/// Vertices of a file at equal coordinates are merged, and vertices that no facet uses are dropped. `key` is
+/// the path of the source in its description, for messages.
 pub fn load_mesh(source: &MeshSource, base: &Path, key: &str) -> Result<Mesh, FormatError> {
     match &source.file {
         Some(file) if !source.is_written_out() => from_file(source, &base.join(file), key),
@@ -35,7 +35,8 @@ fn from_file(source: &MeshSource, path: &Path, key: &str) -> Result<Mesh, Format
     source.adjusted(vertices, facets).map_err(|error| FormatError::source(key, Some(path), error))
 }
 
-/// Vertices and facets as a file has them, vertices at equal coordinates merged: for uses that need no closed surface, such as a hull.
+/// Vertices and facets as a file has them, vertices at equal coordinates merged: for uses that need no
+/// closed surface, such as a hull.
 pub fn read_points(path: &Path) -> Result<Raw, FormatError> {
     let fail = |reason| FormatError::File { key: "mesh".into(), path: path.into(), reason };
     read(path).map(weld::welded).map_err(fail)

@@ -3,7 +3,8 @@
 use super::{Raw, polygon::triangulate};
 use regrasp_api::Vec3;
 
-/// Coordinates of the element `vertex` and triangulated `vertex_indices` of the element `face`; the rest is skipped.
+/// Coordinates of the element `vertex` and triangulated `vertex_indices` of the element `face`; the rest is
+/// skipped.
 pub(super) fn parse(bytes: &[u8]) -> Result<Raw, String> {
     let (header, mut body) = Header::parse(bytes)?;
     let (mut vertices, mut facets) = (Vec::new(), Vec::new());

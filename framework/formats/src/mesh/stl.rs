@@ -10,7 +10,8 @@ const RECORD: usize = 50;
 pub(super) fn parse(bytes: &[u8]) -> Result<Raw, String> {
     let announced = announced(bytes);
     let exact = announced.is_some_and(|count| bytes.len() == HEADER + RECORD * count);
-    // Binary headers may begin with "solid" too: a fitting length decides first, then zeros, which no text has.
+    // Binary headers may begin with "solid" too: a fitting length decides first, then zeros, which no text
+    // has.
     let has_zeros = bytes.iter().take(512).any(|&byte| byte == 0);
     if !exact && !has_zeros && bytes.trim_ascii_start().starts_with(b"solid") {
         return ascii(bytes);

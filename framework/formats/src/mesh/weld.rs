@@ -6,8 +6,9 @@ use std::collections::HashMap;
 
 /// One vertex for each place, in the order of first use; vertices that no facet uses are dropped.
 ///
-/// STL has no shared vertices at all, and exporters of other formats double them along seams. Only exactly equal
-/// coordinates are merged: a tolerance could close what is open. Indices out of range are left for the mesh to refuse.
+/// STL has no shared vertices at all, and exporters of other formats double them along seams. Only exactly
+/// equal coordinates are merged: a tolerance could close what is open. Indices out of range are left for the
+/// mesh to refuse.
 pub(super) fn welded((vertices, mut facets): Raw) -> Raw {
     let mut place = HashMap::with_capacity(vertices.len());
     let mut kept: Vec<Vec3> = Vec::new();

@@ -19,8 +19,8 @@ pub struct Document {
 }
 
 impl Document {
-    /// Parses `text`, as JSON where it begins with a brace and as TOML otherwise; refuses wrong syntax, and any number that is NaN,
-    /// infinite or too large.
+    /// Parses `text`, as JSON where it begins with a brace and as TOML otherwise; refuses wrong syntax, and
+    /// any number that is NaN, infinite or too large.
     pub fn parse(file: &str, text: &str) -> Result<Self, ScenarioError> {
         let mut document = Self {
             file: file.to_owned(),

@@ -8,8 +8,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// A scenario file: a planning problem, where it comes from, and the plugins to solve it with. SI units; angles in degrees where a key
-/// ends with `_deg`.
+/// A scenario file: a planning problem, where it comes from, and the plugins to solve it with. SI units;
+/// angles in degrees where a key ends with `_deg`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
@@ -43,8 +43,8 @@ pub struct ScenarioFile {
     /// Where the object may be sampled; by default a box about start and goals, 15 mm wider on each side.
     #[serde(default)]
     pub workspace: Option<Workspace>,
-    /// What grasps must hold in the world: weight, disturbances, at a share of the friction, within the joints' efforts. With it the stability
-    /// test is `holding` unless the file chooses another.
+    /// What grasps must hold in the world: weight, disturbances, at a share of the friction, within the
+    /// joints' efforts. With it the stability test is `holding` unless the file chooses another.
     #[serde(default)]
     pub hold: Option<HoldDescription>,
     /// Tolerances, resolution and budgets.
@@ -74,7 +74,8 @@ pub struct PaperFigures {
     pub graph_nodes: usize,
 }
 
-/// The hand: exactly one of `builtin`, `file` and `urdf`; the other keys say how a URDF is read.
+/// The hand: exactly one of `builtin`, `file`, `urdf` and `mjcf`; the other keys say how a URDF or MJCF is
+/// read.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HandChoice {
@@ -89,25 +90,36 @@ pub struct HandChoice {
     #[serde(default)]
     #[schemars(example = &"my-hand.urdf")]
     pub urdf: Option<String>,
-    /// The URDF's fingertip links, one a finger, in the order in which the fingers are counted; guessed and printed where absent.
+    /// An MJCF file, relative to the scenario file; `regrasp hand FILE.xml` shows how it is understood.
+    #[serde(default)]
+    #[schemars(example = &"my-hand.xml")]
+    pub mjcf: Option<String>,
+    /// The fingertip links (bodies of an MJCF), one a finger, in the order in which the fingers are counted;
+    /// guessed and printed where absent.
     #[serde(default)]
     #[schemars(extend("examples" = [["thumb_tip", "index_tip", "middle_tip", "ring_tip"]]))]
     pub tips: Vec<String>,
-    /// Radius of the balls that stand for the fingertips (m); where absent, that of the tip links' own balls.
+    /// Radius of the balls that stand for the fingertips (m); where absent, that of the tip links' own
+    /// balls, or fitted to their shapes.
     #[serde(default)]
     #[schemars(range(min = 1e-4, max = 0.2), extend("x-unit" = "m"))]
     #[schemars(example = 0.012)]
     pub fingertip_radius: Option<f64>,
-    /// Centres of these balls in the frames of the tip links (m): one for all, or one for each finger; where absent, they are fitted to the tip
-    /// links' shapes.
+    /// Centres of these balls in the frames of the tip links (m): one for all, or one for each finger; where
+    /// absent, they are fitted to the tip links' shapes.
     #[serde(default)]
     #[schemars(extend("examples" = [[[0.0, 0.0, 0.01]]]))]
     #[schemars(extend("x-unit" = "m"))]
     pub tip_offset: Vec<[f64; 3]>,
-    /// The URDF's link whose frame is the hand's; where absent, the last one that all fingertips hang on.
+    /// The link whose frame is the hand's; where absent, the last one that all fingertips hang on.
     #[serde(default)]
     #[schemars(example = &"palm_link")]
     pub palm: Option<String>,
+    /// The posture of an MJCF (a key frame) in which joints stand that no finger has, and from which the
+    /// fingers' resting posture is sought.
+    #[serde(default)]
+    #[schemars(example = &"home")]
+    pub keyframe: Option<String>,
     /// Folders that hold the packages of `package://` paths, relative to the scenario file.
     #[serde(default)]
     #[schemars(extend("examples" = [["../ros/src"]]))]
@@ -117,6 +129,16 @@ pub struct HandChoice {
     #[schemars(range(min = 1, max = 64))]
     #[schemars(example = 4)]
     pub mesh_pieces: Option<usize>,
+    /// What all lengths of the file are multiplied with (no unit): 0.001 for a file in millimetres.
+    #[serde(default)]
+    #[schemars(range(min = 1e-6, max = 1e6))]
+    #[schemars(example = 0.001)]
+    pub scale: Option<f64>,
+    /// What the coordinates of all its meshes are multiplied with (no unit).
+    #[serde(default)]
+    #[schemars(range(min = 1e-6, max = 1e6))]
+    #[schemars(example = 0.001)]
+    pub mesh_scale: Option<f64>,
     /// Largest acceleration of every joint (rad/s²); where absent, what the URDF says, or else 20.
     #[serde(default)]
     #[schemars(range(min = 1e-3, max = 1e9), extend("x-unit" = "rad/s²"))]
@@ -132,13 +154,60 @@ pub struct HandChoice {
     #[schemars(range(min = 1e-6, max = 1e9), extend("x-unit" = "N·m"))]
     #[schemars(example = 1.0)]
     pub effort: Option<f64>,
+    /// Range (rad) of joints for which the file says none, or one of no width: lowest and highest position.
+    #[serde(default)]
+    #[schemars(extend("examples" = [[-0.3, 1.6]]))]
+    pub limits: Option<[f64; 2]>,
+    /// What holds for joints by name, whatever the file says.
+    #[serde(default)]
+    pub joint: Vec<JointTable>,
+}
+
+/// What holds for the joints of some names.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointTable {
+    /// A joint's name; `*` stands for any letters.
+    #[schemars(example = &"thumb_*")]
+    pub name: String,
+    /// Lowest position (rad; m where prismatic), together with `upper`.
+    #[serde(default)]
+    #[schemars(range(min = -12.57, max = 12.57))]
+    #[schemars(example = -0.3)]
+    pub lower: Option<f64>,
+    /// Highest position (rad; m where prismatic), together with `lower`.
+    #[serde(default)]
+    #[schemars(range(min = -12.57, max = 12.57))]
+    #[schemars(example = 1.6)]
+    pub upper: Option<f64>,
+    /// Largest velocity (rad/s; m/s where prismatic).
+    #[serde(default)]
+    #[schemars(range(min = 1e-3, max = 1e9))]
+    #[schemars(example = 3.0)]
+    pub velocity: Option<f64>,
+    /// Largest effort (N·m; N where prismatic).
+    #[serde(default)]
+    #[schemars(range(min = 1e-6, max = 1e9))]
+    #[schemars(example = 0.7)]
+    pub effort: Option<f64>,
+    /// Largest acceleration (rad/s²; m/s² where prismatic).
+    #[serde(default)]
+    #[schemars(range(min = 1e-3, max = 1e9))]
+    #[schemars(example = 20.0)]
+    pub acceleration: Option<f64>,
+    /// Where the joint stands (rad; m where prismatic) if no finger has it.
+    #[serde(default)]
+    #[schemars(range(min = -12.57, max = 12.57))]
+    #[schemars(example = 0.0)]
+    pub position: Option<f64>,
 }
 
 /// One table for each slot.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
 pub struct PluginTables {
-    /// Plugins and settings that belong together, under one name: `default` or `paper`. The tables below change it.
+    /// Plugins and settings that belong together, under one name: `default` or `paper`. The tables below
+    /// change it.
     #[schemars(example = &"paper")]
     pub preset: Option<String>,
     /// Slot `contact-model`.

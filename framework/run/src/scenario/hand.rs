@@ -1,10 +1,10 @@
 //! The hand of a scenario: a built-in one, a hand file, or a URDF.
 
 use super::document::{Document, key_path};
-use super::{HANDS, HandChoice, Place, ScenarioError, find, read, unknown};
+use super::{HANDS, HandChoice, JointTable, Place, ScenarioError, find, read, unknown};
 use regrasp_api::{HandDescription, Refuse};
 use regrasp_formats::{RobotFileError, embed_hand};
-use regrasp_hands::{UrdfHand, UrdfOptions, UrdfReport, read_urdf};
+use regrasp_hands::{HandOptions, HandReport, JointChoice, ReadHand, read_hand};
 use regrasp_world::ChainHand;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -27,7 +27,8 @@ struct HandAlone {
     hand: HandChoice,
 }
 
-/// A hand by itself: `text` is the table `hand` of a scenario under that key, as JSON or TOML; files are looked for in `folder`.
+/// A hand by itself: `text` is the table `hand` of a scenario under that key, as JSON or TOML; files are
+/// looked for in `folder`.
 pub fn load_hand(text: &str, folder: &Path) -> Result<LoadedHand, ScenarioError> {
     let document = Document::parse("hand", text)?;
     let HandAlone { hand } = document.read()?;
@@ -40,13 +41,14 @@ pub(super) fn load(
     choice: &HandChoice,
     folder: &Path,
 ) -> Result<LoadedHand, ScenarioError> {
-    if choice.urdf.is_none()
-        && let Some(key) = choice.urdf_key()
+    if choice.robot().is_none()
+        && let Some(key) = choice.reading_key()
     {
-        let message = format!("`{key}` says how a URDF is to be read; give `urdf` too, or remove it");
+        let message =
+            format!("`{key}` says how a URDF or MJCF is to be read; give `urdf` or `mjcf` too, or remove it");
         return Err(scenario.refuse(&key_path(&format!("hand.{key}")), message));
     }
-    match (&choice.builtin, &choice.file, &choice.urdf) {
+    match (&choice.builtin, &choice.file, choice.robot()) {
         (Some(name), None, None) => {
             let built_in = find(HANDS, name).ok_or_else(|| unknown("hand", name, HANDS))?;
             described(Document::parse(built_in.name, built_in.text)?, Path::new(""))
@@ -56,11 +58,11 @@ pub(super) fn load(
             let document = Document::parse(&path.display().to_string(), &read(&path)?)?;
             described(document, path.parent().unwrap_or(Path::new("")))
         }
-        (None, None, Some(file)) => from_urdf(scenario, choice, &folder.join(file), folder),
+        (None, None, Some(file)) => from_robot(scenario, choice, &folder.join(file), folder),
         _ => {
-            let message =
-                "give one of `builtin` (the name of a built-in hand), `file` (a hand file) and `urdf`"
-                    .to_owned();
+            let message = "give one of `builtin` (the name of a built-in hand), `file` (a hand file), \
+             `urdf` and `mjcf`"
+                .to_owned();
             Err(scenario.refuse(&key_path("hand"), message))
         }
     }
@@ -73,20 +75,20 @@ fn described(document: Document, folder: &Path) -> Result<LoadedHand, ScenarioEr
     Ok(LoadedHand { hand, description, remarks: Vec::new() })
 }
 
-fn from_urdf(
+fn from_robot(
     scenario: &Document,
     choice: &HandChoice,
     path: &Path,
     folder: &Path,
 ) -> Result<LoadedHand, ScenarioError> {
-    let UrdfHand { description, report } =
-        read_urdf(path, &choice.urdf_options(folder)).map_err(|error| urdf_refused(scenario, error))?;
+    let ReadHand { description, report } =
+        read_hand(path, &choice.options(folder)).map_err(|error| robot_refused(scenario, error))?;
     let hand = ChainHand::new(description.clone()).map_err(|error| scenario.refused(&error))?;
     Ok(LoadedHand { hand, description, remarks: remarks(path, &report) })
 }
 
 /// What was chosen because the scenario does not say it.
-fn remarks(path: &Path, report: &UrdfReport) -> Vec<String> {
+fn remarks(path: &Path, report: &HandReport) -> Vec<String> {
     let file = path.display();
     let guess = report.tips_guessed.then(|| {
         format!(
@@ -98,13 +100,14 @@ fn remarks(path: &Path, report: &UrdfReport) -> Vec<String> {
     guess.into_iter().chain(notes).collect()
 }
 
-/// A URDF's fault with its own place; what concerns the file as a whole, with the scenario's key.
-fn urdf_refused(scenario: &Document, error: RobotFileError) -> ScenarioError {
+/// A robot file's fault with its own place; what concerns the file as a whole, with the scenario's key.
+fn robot_refused(scenario: &Document, error: RobotFileError) -> ScenarioError {
     let file = error.file.display().to_string();
     let refusal = error.refusal();
     let Some(line) = error.line else {
         let message = format!("{} (reading {file})", error.message);
-        let key = format!("hand.{}", error.key.unwrap_or("urdf"));
+        let file_key = if scenario.has(&key_path("hand.mjcf")) { "mjcf" } else { "urdf" };
+        let key = format!("hand.{}", error.key.unwrap_or(file_key));
         return scenario.refused(&refusal.told(&message).key(key));
     };
     let text = std::fs::read_to_string(&error.file).unwrap_or_default();
@@ -114,46 +117,76 @@ fn urdf_refused(scenario: &Document, error: RobotFileError) -> ScenarioError {
 }
 
 impl HandChoice {
-    /// The keys that say how a URDF is read.
-    const URDF_KEYS: [&'static str; 9] = [
+    /// The keys that say how a URDF or MJCF is read.
+    const READING_KEYS: [&'static str; 14] = [
         "tips",
         "fingertip_radius",
         "tip_offset",
         "palm",
+        "keyframe",
         "packages",
         "mesh_pieces",
+        "scale",
+        "mesh_scale",
         "acceleration",
         "velocity",
         "effort",
+        "limits",
+        "joint",
     ];
 
+    /// The robot's file, URDF or MJCF; `None` where there is none, or both.
+    fn robot(&self) -> Option<&String> {
+        match (&self.urdf, &self.mjcf) {
+            (Some(_), Some(_)) => None,
+            (urdf, mjcf) => urdf.as_ref().or(mjcf.as_ref()),
+        }
+    }
+
     /// The first of these keys that is given.
-    fn urdf_key(&self) -> Option<&'static str> {
+    fn reading_key(&self) -> Option<&'static str> {
         let given = [
             !self.tips.is_empty(),
             self.fingertip_radius.is_some(),
             !self.tip_offset.is_empty(),
             self.palm.is_some(),
+            self.keyframe.is_some(),
             !self.packages.is_empty(),
             self.mesh_pieces.is_some(),
+            self.scale.is_some(),
+            self.mesh_scale.is_some(),
             self.acceleration.is_some(),
             self.velocity.is_some(),
             self.effort.is_some(),
+            self.limits.is_some(),
+            !self.joint.is_empty(),
         ];
-        Self::URDF_KEYS.into_iter().zip(given).find_map(|(key, given)| given.then_some(key))
+        Self::READING_KEYS.into_iter().zip(given).find_map(|(key, given)| given.then_some(key))
     }
 
-    fn urdf_options(&self, folder: &Path) -> UrdfOptions {
-        UrdfOptions {
+    fn options(&self, folder: &Path) -> HandOptions {
+        HandOptions {
             tips: self.tips.clone(),
             fingertip_radius: self.fingertip_radius,
             tip_offset: self.tip_offset.clone(),
             palm: self.palm.clone(),
+            keyframe: self.keyframe.clone(),
             packages: self.packages.iter().map(|package| -> PathBuf { folder.join(package) }).collect(),
             mesh_pieces: self.mesh_pieces,
+            scale: self.scale,
+            mesh_scale: self.mesh_scale,
             acceleration: self.acceleration,
             velocity: self.velocity,
             effort: self.effort,
+            limits: self.limits,
+            joints: self.joint.iter().map(JointTable::choice).collect(),
         }
+    }
+}
+
+impl JointTable {
+    fn choice(&self) -> JointChoice {
+        let Self { name, lower, upper, velocity, effort, acceleration, position } = self.clone();
+        JointChoice { name, lower, upper, velocity, effort, acceleration, position }
     }
 }

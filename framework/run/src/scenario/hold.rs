@@ -59,16 +59,19 @@ fn check(document: &Document, content: &ScenarioFile, hold: &HoldDescription) ->
         return refuse(
             "hold.friction_factor",
             format!(
-                "`hold.friction_factor` = {factor} is outside {range}; give a share of the friction, or \"most\""
+                "`hold.friction_factor` = {factor} is outside {range}; give a share of the friction, or \
+                 \"most\""
             ),
         );
     }
     if document.has(&key_path("limits.resolution.friction_margin")) {
-        let both = "`limits.resolution.friction_margin` and `[hold]` both say how much friction plans rely on; leave one out";
+        let both = "`limits.resolution.friction_margin` and `[hold]` both say how much friction plans rely \
+         on; leave one out";
         return refuse("limits.resolution.friction_margin", both.into());
     }
     if !hold.weight && hold.disturbance == [0.0; 2] {
-        let nothing = "`hold.weight` = false with no `disturbance` asks for nothing to be held; give one, or leave `[hold]` out";
+        let nothing = "`hold.weight` = false with no `disturbance` asks for nothing to be held; give one, \
+         or leave `[hold]` out";
         return refuse("hold.weight", nothing.into());
     }
     let weight = content.object.mass * content.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();

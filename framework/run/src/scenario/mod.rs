@@ -1,7 +1,8 @@
 //! Scenario files: from TOML text to a checked problem with its plugins.
 //!
-//! A scenario is a file, or the name of a built-in one. Everything that a file can have wrong is a [`ScenarioError`] with its place; start and
-//! goal grasps alone are left to the planner, which knows stability and collision.
+//! A scenario is a file, or the name of a built-in one. Everything that a file can have wrong is a
+//! [`ScenarioError`] with its place; start and goal grasps alone are left to the planner, which knows
+//! stability and collision.
 
 mod document;
 mod error;
@@ -91,7 +92,8 @@ fn is_plan(text: &str) -> bool {
     is_json(text) && serde_json::from_str(text).is_ok_and(format)
 }
 
-/// Reads a scenario from TOML or JSON text; `file` is what messages call it, `folder` where the files that it names are looked for.
+/// Reads a scenario from TOML or JSON text; `file` is what messages call it, `folder` where the files that
+/// it names are looked for.
 pub fn from_text(
     file: &str,
     text: &str,

