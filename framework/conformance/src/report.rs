@@ -46,6 +46,22 @@ impl Report {
         self.failed().is_empty()
     }
 
+    /// One line: how many checks were made, and which were not, with the reason.
+    pub fn summary(&self) -> String {
+        let skipped = self.checks.iter().filter_map(|check| match &check.outcome {
+            Outcome::NotApplicable(reason) => Some(format!("`{}` ({reason})", check.name)),
+            _ => None,
+        });
+        let skipped: Vec<String> = skipped.collect();
+        let made = self.checks.len() - skipped.len();
+        let failed = self.failed().len();
+        let mut line = format!("`{}`: {made} checks made, {failed} failed", self.plugin);
+        if !skipped.is_empty() {
+            line += &format!(", {} not tried: {}", skipped.len(), skipped.join(", "));
+        }
+        line
+    }
+
     /// Panics with the whole report where a check failed.
     pub fn assert_passes(&self) {
         assert!(self.passes(), "{self}");
@@ -75,6 +91,32 @@ pub(crate) enum Fault {
     Broken(String),
     /// The law says nothing here.
     Skip(String),
+}
+
+impl Fault {
+    /// The same with the place where it happened.
+    pub fn at(self, place: &str) -> Self {
+        match self {
+            Self::Broken(reason) => Self::Broken(format!("{place}: {reason}")),
+            skip => skip,
+        }
+    }
+}
+
+/// The same text with numbers of at most six decimals.
+fn short(text: &str) -> String {
+    let (mut decimals, mut out) = (None, String::with_capacity(text.len()));
+    for c in text.chars() {
+        decimals = match (c, decimals) {
+            ('.', None) => Some(0),
+            ('0'..='9', Some(count)) => Some(count + 1),
+            _ => None,
+        };
+        if decimals.is_none_or(|count| count <= 6) {
+            out.push(c);
+        }
+    }
+    out
 }
 
 /// What a check comes to.
@@ -109,7 +151,7 @@ impl From<Finding> for Outcome {
     fn from(finding: Finding) -> Self {
         match finding {
             Ok(()) => Self::Passed,
-            Err(Fault::Broken(reason)) => Self::Failed(reason),
+            Err(Fault::Broken(reason)) => Self::Failed(short(&reason)),
             Err(Fault::Skip(reason)) => Self::NotApplicable(reason),
         }
     }
@@ -118,6 +160,14 @@ impl From<Finding> for Outcome {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(
+            short("at 0.123456789 of 3.5e-12, facet 1234567890."),
+            "at 0.123456 of 3.5e-12, facet 1234567890."
+        );
+    }
 
     #[test]
     fn a_report_names_what_failed_and_why_it_matters() {
@@ -131,6 +181,8 @@ mod tests {
             ],
         };
         assert_eq!(report.failed(), ["round"]);
+        let line = report.summary();
+        assert_eq!(line, "`surface/flat`: 2 checks made, 1 failed, 1 not tried: `smooth` (no edges)");
         let text = report.to_string();
         assert!(text.contains("FAIL  round: it is flat") && text.contains("somebody relies on it"), "{text}");
     }

@@ -122,9 +122,18 @@ fn suggestion(near: &[String], known: &[String]) -> String {
     }
 }
 
+/// What stands before a fault: the key; nothing where the data as a whole depart.
+fn place(path: &KeyPath, fault: &Fault) -> String {
+    match fault {
+        _ if path.0.is_empty() => String::new(),
+        Fault::Range { .. } => format!("`{path}` = "),
+        _ => format!("`{path}`: "),
+    }
+}
+
 /// The first place where data depart from a schema.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("`{path}`{} {fault}", if matches!(fault, Fault::Range { .. }) { " =" } else { ":" })]
+#[error("{}{fault}", place(.path, .fault))]
 pub struct Departure {
     /// Where.
     pub path: KeyPath,

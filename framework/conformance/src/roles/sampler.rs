@@ -3,7 +3,7 @@
 use crate::fixtures::{Bench, to_object};
 use crate::law::{Always, Law, Subject, context, counted_once, pure, random};
 use crate::reference::{RejectionSampler, closest_on_mesh};
-use crate::report::{Finding, broken, ensure};
+use crate::report::{Fault, Finding, broken, ensure};
 use regrasp_api::{
     Build, CallError, ClosedChainSampler, Configuration, Context, FingerIndex, FingerSet, Hand, Pose,
     PoseRequest, Reason, Slot, angle_between,
@@ -108,7 +108,8 @@ fn on_samples(
                 for key in 0..2 {
                     let mut context = context(key + 10 * (i + 10 * k) as u64);
                     if let Some(q) = sampler.sample(&bench.task(), *request, holding, &mut context)? {
-                        check(bench, holding, request, &q)?;
+                        let at = |fault: Fault| fault.at(&format!("`{}`, request {i}", bench.name));
+                        check(bench, holding, request, &q).map_err(at)?;
                     }
                 }
             }

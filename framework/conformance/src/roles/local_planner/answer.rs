@@ -1,16 +1,17 @@
 //! Laws of a local planner's answer.
 
 use super::case::{Goal, cases};
-use super::{Kind, build, journeys};
+use super::{Kind, build, journeys, on_journeys};
 use crate::law::{Always, Subject, context, counted_once, pure, random};
-use crate::report::{Finding, ensure};
+use crate::report::{Fault, Finding, ensure};
 use regrasp_api::{
     BodyPair, CallError, Clearance, Configuration, Context, FingerIndex, FingerJoints, FingerSet,
     PairDistance, Path, Pose, Reason, Slot, Task, TipRule,
 };
+use regrasp_audit::laws;
 
 pub(super) fn ends<K: Kind>(subject: &Subject<'_>) -> Finding {
-    for journey in journeys::<K>(subject)?.iter() {
+    on_journeys::<K>(subject, |journey| {
         let states = &journey.path.states;
         ensure(states.first() == Some(&journey.case.from), || {
             format!("the first of {} states is not where it began", states.len())
@@ -18,17 +19,17 @@ pub(super) fn ends<K: Kind>(subject: &Subject<'_>) -> Finding {
         ensure(states.last() == Some(&journey.reached.end), || {
             format!("the last of {} states is not the end that it returns", states.len())
         })?;
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 pub(super) fn reached<K: Kind>(subject: &Subject<'_>) -> Finding {
-    for journey in journeys::<K>(subject)?.iter() {
+    on_journeys::<K>(subject, |journey| {
         let (fraction, stop) = (journey.reached.fraction, journey.reached.stop);
         let fits = (0.0..=1.0).contains(&fraction) && (fraction == 1.0) == stop.is_none();
         ensure(fits, || format!("fraction {fraction} with {stop:?}"))?;
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 pub(super) fn target<K: Kind>(subject: &Subject<'_>) -> Finding {
@@ -98,6 +99,10 @@ impl Clearance for Crowded {
 }
 
 pub(super) fn reasons<K: Kind>(subject: &Subject<'_>) -> Finding {
+    on_journeys::<K>(subject, |journey| {
+        let kept = laws::refusal_counted(K::SLOT, &journey.reached, &journey.tally);
+        kept.map_err(|fault| Fault::Broken(fault.what))
+    })?;
     for case in journeys::<K>(subject)?.iter().map(|journey| journey.case).filter(|case| !case.easy) {
         let planner = build(subject, case)?;
         let task = Task { clearance: &Crowded, ..case.bench.task() };

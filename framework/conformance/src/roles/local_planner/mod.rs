@@ -173,6 +173,15 @@ fn build(subject: &Subject<'_>, case: &Case) -> Finding<Box<dyn LocalPlanner>> {
     Ok(build(&subject.demands.settings, &case.bench.parts())?)
 }
 
+/// Tries something on all that the plugin made; a failure names hand, object and case.
+fn on_journeys<K: Kind>(subject: &Subject<'_>, check: impl Fn(&Journey) -> Finding) -> Finding {
+    for journey in journeys::<K>(subject)?.iter() {
+        let number = cases(K::SLOT).iter().position(|case| std::ptr::eq(case, journey.case)).unwrap_or(0);
+        check(journey).map_err(|fault| fault.at(&format!("`{}`, case {number}", journey.case.bench.name)))?;
+    }
+    Ok(())
+}
+
 /// What the plugin makes of every problem of the slot whose hand and object it takes.
 fn journeys<K: Kind>(subject: &Subject<'_>) -> Finding<Rc<Vec<Journey>>> {
     if let Some((_, known)) = subject.journeys.borrow().iter().find(|(slot, _)| *slot == K::SLOT) {
@@ -187,14 +196,13 @@ fn journeys<K: Kind>(subject: &Subject<'_>) -> Finding<Rc<Vec<Journey>>> {
         };
         let mut path = Path::default();
         let (task, target) = (case.bench.task(), case.goal.target());
-        let reached =
-            match planner.connect(&task, &case.from, &target, Some(&mut path), &mut context(key as u64)) {
-                // The plugin's law is for other hands or contact models: it says so, and is tried on the
-                // rest.
-                Err(CallError::Unsupported { .. }) => continue,
-                reached => reached?,
-            };
-        made.push(Journey { case, reached, path });
+        let mut context = context(key as u64);
+        let reached = match planner.connect(&task, &case.from, &target, Some(&mut path), &mut context) {
+            // The plugin's law is for other hands or contact models: it says so, and is tried on the rest.
+            Err(CallError::Unsupported { .. }) => continue,
+            reached => reached?,
+        };
+        made.push(Journey { case, reached, path, tally: context.tally });
     }
     if made.is_empty() {
         return Err(crate::report::Fault::Skip(

@@ -2,19 +2,19 @@
 
 use super::case::Goal;
 use super::inspect::{Touch, instants};
-use super::{Journey, Kind, Regrasp, Transfer, journeys};
+use super::{Journey, Kind, Regrasp, Transfer, on_journeys};
 use crate::fixtures::to_object;
 use crate::law::Subject;
 use crate::report::{Finding, ensure};
 use regrasp_api::{Fingertip, Hand, Vec3};
 
 pub(super) fn same_fingers<K: Kind>(subject: &Subject<'_>) -> Finding {
-    for journey in journeys::<K>(subject)?.iter() {
+    on_journeys::<K>(subject, |journey| {
         let holding = journey.case.from.holding();
         let other = journey.path.states.iter().position(|q| q.holding() != holding);
         ensure(other.is_none(), || format!("other fingers hold in state {other:?}"))?;
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 /// A point fingertip keeps its contact, and its ball the place over the object that it had at touch-down.
@@ -36,11 +36,11 @@ fn stays_put(journey: &Journey) -> Finding {
 
 /// Slip adds up, as vectors in the object's frame, from the start to any instant.
 pub(super) fn no_slip(subject: &Subject<'_>) -> Finding {
-    for journey in journeys::<Transfer>(subject)?.iter() {
+    on_journeys::<Transfer>(subject, |journey| {
         let bench = journey.case.bench;
         if bench.world.hand.fingertip() == Fingertip::Point {
             stays_put(journey)?;
-            continue;
+            return Ok(());
         }
         for finger in journey.case.from.holding().iter() {
             let (mut before, mut net): (Option<Touch>, Vec3) = (None, Vec3::zeros());
@@ -58,12 +58,12 @@ pub(super) fn no_slip(subject: &Subject<'_>) -> Finding {
                 before = Some(now);
             }
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 pub(super) fn others_rest(subject: &Subject<'_>) -> Finding {
-    for journey in journeys::<Regrasp>(subject)?.iter() {
+    on_journeys::<Regrasp>(subject, |journey| {
         let (from, Goal::Regrasp { finger, .. }) = (&journey.case.from, &journey.case.goal) else { continue };
         for (i, q) in journey.path.states.iter().enumerate() {
             let mut rest = q.clone();
@@ -71,20 +71,20 @@ pub(super) fn others_rest(subject: &Subject<'_>) -> Finding {
             rest.contacts[*finger] = from.contacts[*finger];
             ensure(rest == *from, || format!("more than finger {} moves in state {i}", finger.0))?;
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 /// How far (m) the fingertip must have left the object half-way from contact to contact.
 const LIFTED: f64 = 1e-3;
 
 pub(super) fn touches_at_ends(subject: &Subject<'_>) -> Finding {
-    for journey in journeys::<Regrasp>(subject)?.iter() {
+    on_journeys::<Regrasp>(subject, |journey| {
         let Goal::Regrasp { finger, .. } = &journey.case.goal else { continue };
         let states = &journey.path.states;
         let last = states.len().saturating_sub(1) as f64;
         if states.len() < 2 {
-            continue;
+            return Ok(());
         }
         let mut highest = f64::NEG_INFINITY;
         for (at, q) in instants(&journey.path) {
@@ -97,6 +97,6 @@ pub(super) fn touches_at_ends(subject: &Subject<'_>) -> Finding {
         }
         let moved = states[0].joints[*finger] != journey.reached.end.joints[*finger];
         ensure(!moved || highest >= LIFTED, || format!("the finger rises {highest:e} m only"))?;
-    }
-    Ok(())
+        Ok(())
+    })
 }

@@ -1,7 +1,7 @@
 //! Laws of the way between the ends: limits, collision, stability, closed contacts.
 
 use super::inspect::{Touch, instants};
-use super::{Journey, Kind, journeys};
+use super::{Journey, Kind, on_journeys};
 use crate::law::Subject;
 use crate::reference::{Closure, closure};
 use crate::report::{Finding, ensure};
@@ -21,18 +21,18 @@ fn moving(journey: &Journey) -> Option<FingerIndex> {
 }
 
 pub(super) fn limits<K: Kind>(subject: &Subject<'_>) -> Finding {
-    for journey in journeys::<K>(subject)?.iter() {
+    on_journeys::<K>(subject, |journey| {
         let hand = &journey.case.bench.world.hand;
         for (i, q) in journey.path.states.iter().enumerate() {
             let out = q.joints.iter().find(|(finger, joints)| !hand.within_limits(*finger, joints));
             ensure(out.is_none(), || format!("state {i} leaves the limits: {out:?}"))?;
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 pub(super) fn collision_free<K: Kind>(subject: &Subject<'_>) -> Finding {
-    for journey in journeys::<K>(subject)?.iter() {
+    on_journeys::<K>(subject, |journey| {
         // Whether fingertips that hold, or did, touch the object as they should is another law.
         let may_touch =
             |finger| Some(finger) == moving(journey) || journey.case.from.holding().contains(finger);
@@ -48,12 +48,12 @@ pub(super) fn collision_free<K: Kind>(subject: &Subject<'_>) -> Finding {
             let hit = close.iter().find(|found| found.distance <= 0.0 && !touches(&found.pair));
             ensure(hit.is_none(), || format!("{hit:?} at {at} of {} states", journey.path.states.len()))?;
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 pub(super) fn stays_stable<K: Kind>(subject: &Subject<'_>) -> Finding {
-    for journey in journeys::<K>(subject)?.iter() {
+    on_journeys::<K>(subject, |journey| {
         // A planner that stays where it is has made no claim about it.
         let states = if journey.path.states.len() > 1 { &journey.path.states[..] } else { &[] };
         for (i, q) in states.iter().enumerate() {
@@ -67,13 +67,13 @@ pub(super) fn stays_stable<K: Kind>(subject: &Subject<'_>) -> Finding {
                 format!("the fingers {holding:?} do not hold the object in state {i} of {}", states.len())
             })?;
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 /// The stored contacts are where the fingertips touch.
 pub(super) fn contacts_true<K: Kind>(subject: &Subject<'_>) -> Finding {
-    for journey in journeys::<K>(subject)?.iter() {
+    on_journeys::<K>(subject, |journey| {
         let tolerances = journey.case.bench.tolerances;
         for (i, q) in journey.path.states.iter().enumerate() {
             for finger in q.holding().iter() {
@@ -93,8 +93,8 @@ pub(super) fn contacts_true<K: Kind>(subject: &Subject<'_>) -> Finding {
                 })?;
             }
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 /// Between the states of a path in GS_n a fingertip may leave the surface by this many tolerances: the path
@@ -104,7 +104,7 @@ const GUIDE: f64 = 5.0;
 
 pub(super) fn stays_closed<K: Kind>(subject: &Subject<'_>) -> Finding {
     let guide = K::SLOT == Slot::GraspPlanner;
-    for journey in journeys::<K>(subject)?.iter() {
+    on_journeys::<K>(subject, |journey| {
         let bench = journey.case.bench;
         for (at, q) in instants(&journey.path) {
             for finger in q.holding().iter() {
@@ -116,6 +116,6 @@ pub(super) fn stays_closed<K: Kind>(subject: &Subject<'_>) -> Finding {
                 })?;
             }
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
