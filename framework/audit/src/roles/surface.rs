@@ -6,18 +6,8 @@ use regrasp_api::{CallError, Contact, Context, Projection, Random, SurfaceParam,
 use serde_json::json;
 use std::cell::RefCell;
 
-/// Of how many projections one is compared with all facets, which takes longer than the plugin does: told by
-/// the position's bits, so that the same calls are looked at in every run.
-const RARE: u64 = 16;
-
 fn alike<T: PartialEq>(first: &T, again: &T) -> Kept {
     ensure("pure", first == again, || "the same call again answers otherwise".into())
-}
-
-/// Whether a position is one of the few that are compared with all facets.
-fn is_looked_at(p: &Vec3) -> bool {
-    let bits = p.iter().fold(0_u64, |sum, x| (sum ^ x.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    (bits >> 40).is_multiple_of(RARE)
 }
 
 impl Audited<'_, dyn SurfaceParam + '_> {
@@ -84,7 +74,11 @@ impl SurfaceParam for Audited<'_, dyn SurfaceParam + '_> {
                         plain.distance, found.distance
                     )
                 })?;
-                if is_looked_at(p_OF) { laws::projection_kept(&self.ground(), p_OF, found) } else { Ok(()) }
+                if laws::is_looked_at(p_OF) {
+                    laws::projection_kept(&self.ground(), p_OF, found)
+                } else {
+                    Ok(())
+                }
             },
         )
     }
