@@ -101,7 +101,7 @@ pub struct PlanArgs {
     #[arg(long)]
     pub view_graph: bool,
     /// Hold every call of a plugin against the laws of its role; the first breach ends the run and names plugin, law and call. The run takes
-    /// about three times as long.
+    /// several times as long.
     #[arg(long)]
     pub audit: bool,
     /// Audit, and write what broke a law to this file: the call with its input, and the whole problem.

@@ -61,7 +61,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     ending(&ran, &summary)
 }
 
-/// Whether the run is under audit: on demand alone, as it takes three times as long.
+/// Whether the run is under audit: on demand alone, as it takes several times as long.
 fn is_audited(args: &PlanArgs) -> bool {
     args.audit || args.audit_save.is_some()
 }

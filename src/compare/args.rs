@@ -64,8 +64,8 @@ pub struct CompareArgs {
     /// Make every run in a process of its own, so that one that ends its process is a row like any other.
     #[arg(long)]
     pub isolate: bool,
-    /// Hold every call of a plugin against the laws of its role; a run in which one is broken is a failed row. Runs take about three times as
-    /// long, so their times say nothing.
+    /// Hold every call of a plugin against the laws of its role; a run in which one is broken is a failed row. Runs take several times
+    /// as long, so their times say nothing.
     #[arg(long)]
     pub audit: bool,
     /// Keep the plan of every run in `plans/SCENARIO/`.

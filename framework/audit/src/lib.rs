@@ -10,7 +10,7 @@
 //!
 //! Every call is made a second time, with the same random stream and without what was known before: an answer
 //! that differs is impure. While a call is repeated, and while laws are checked, nothing else is audited. A
-//! run under audit takes about three times as long.
+//! run under audit takes several times as long.
 
 mod audited;
 mod auditor;

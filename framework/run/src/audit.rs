@@ -22,7 +22,7 @@ pub struct AuditCase {
 impl Setup<'_> {
     /// Plans and verifies as [`Setup::run`] does, every call of a plugin under audit; the first breach of a law ends the run.
     ///
-    /// The plan is that of a run without audit. It takes about three times as long.
+    /// The plan is that of a run without audit. It takes several times as long.
     pub fn run_audited(&self, options: &RunOptions<'_>) -> (Result<Run, RunError>, Option<AuditCase>) {
         let auditor = self.auditor();
         let solve = |request: &Request<'_>| audited(request, &auditor, &regrasp_planner::solve);
