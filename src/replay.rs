@@ -76,7 +76,9 @@ pub fn run(_: &ReplayArgs) -> Result<(), crate::Failure> {
 }
 
 #[cfg(feature = "rapier")]
-pub use simulated::run;
+pub fn run(args: &ReplayArgs) -> Result<(), crate::Failure> {
+    if args.sweep { sweep::run(args) } else { simulated::run(args) }
+}
 
 #[cfg(feature = "rapier")]
 mod simulated;

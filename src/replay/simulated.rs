@@ -21,9 +21,6 @@ pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
     outputs::check(&[args.plan.clone()], wished.as_slice(), args.overwrite)?;
     let standard = args.output.as_deref().is_some_and(outputs::is_standard);
     let plan = regrasp::plan::read(&args.plan).map_err(Failure::refused)?;
-    if args.sweep {
-        return super::sweep::run(args, &plan);
-    }
     let told = Told::new(args, &plan)?;
     if let Some(path) = args.output.as_ref().filter(|_| !standard) {
         let json = told.json(true);

@@ -21,7 +21,8 @@ struct World {
 }
 
 /// Replays the plan in every world, friction and mass with each stiffness and slowdown, and tells what arrives.
-pub fn run(args: &ReplayArgs, plan: &Plan) -> Result<(), Failure> {
+pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
+    let plan = &regrasp::plan::read(&args.plan).map_err(Failure::refused)?;
     let holds = plan.certificate.as_ref().and_then(|certificate| certificate.holds.as_ref());
     let mut worlds = Vec::new();
     for args in all(args) {

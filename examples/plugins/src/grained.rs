@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GrainedSettings {
-    /// Friction across the grain as a share of that along it (no unit), 0.1..=1.
+    /// Friction across the grain as a share of that along it (no unit).
     #[schemars(range(min = 0.1, max = 1.0), extend("x-unit" = "1"))]
     pub across: f64,
-    /// Torsional friction radius of the patch (m), 0..=0.01; 0 makes a point of it.
+    /// Torsional friction radius of the patch (m); 0 makes a point of it.
     #[schemars(range(min = 0.0, max = 0.01), extend("x-unit" = "m"))]
     pub gamma: f64,
 }

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GuardedSettings {
-    /// How far every joint must stay from its limits at the end (rad; m where prismatic), 0..=0.2.
+    /// How far every joint must stay from its limits at the end (rad; m where prismatic).
     #[schemars(range(min = 0.0, max = 0.2), extend("x-unit" = "rad"))]
     pub reserve: f64,
 }

@@ -240,6 +240,7 @@ struct Unlooked {
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     share: Option<f64>,
     /// Two lengths (m), 0..=1 as only this line says.
+    #[schemars(extend("x-unit" = "m"))]
     lengths: [f64; 2],
 }
 
@@ -256,6 +257,7 @@ impl Settings for Unlooked {}
 #[serde(deny_unknown_fields, default)]
 struct LooseInside {
     /// A share, 0..=1 as only this line says.
+    #[schemars(extend("x-unit" = "1"))]
     share: f64,
 }
 

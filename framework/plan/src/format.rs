@@ -1,7 +1,7 @@
 //! What a plan file holds. SI units; keys in the order of the fields.
 
-use crate::{Claims, ObjectRecord, PlanCertificate, Statistics};
-use regrasp_api::{Figure, Problem, Slot};
+use crate::{Claims, ObjectRecord, PlanCertificate, PluginNotes, Statistics};
+use regrasp_api::{Problem, Slot};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -64,9 +64,6 @@ pub struct ResolvedScenario {
     /// The plugin in each slot.
     pub plugins: BTreeMap<Slot, PluginChoice>,
 }
-
-/// What one plugin has to say of a plan.
-pub type PluginNotes = BTreeMap<String, Figure>;
 
 /// A plugin with its settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,9 +1,11 @@
 //! How the search went: counts that the seed determines, and times that it does not.
 
-use crate::PluginNotes;
-use regrasp_api::{Reason, Slot, Tally};
+use regrasp_api::{Figure, Reason, Slot, Tally};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+
+/// What one plugin has to say of a plan.
+pub type PluginNotes = BTreeMap<String, Figure>;
 
 /// How the search went. Everything but `time_s` is the same on every run with the same seed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,7 +1,5 @@
 //! The verifier's own forward kinematics, straight from the hand's description.
 
-use crate::stability::Row;
-use crate::track::Frames;
 use nalgebra::{Translation3, Unit};
 use regrasp_api::{
     FingerDescription, HandDescription, JointDescription, JointKind, MAX_FINGER_JOINTS, MAX_FINGERS, Pose,
@@ -43,7 +41,7 @@ pub(crate) struct Driven {
 pub(crate) struct Joint {
     pub(crate) kind: JointKind,
     X_PJ: Pose,
-    axis: Unit<Vec3>,
+    pub(crate) axis: Unit<Vec3>,
     pub(crate) lower: f64,
     pub(crate) upper: f64,
     pub(crate) velocity: f64,
@@ -73,25 +71,6 @@ impl Chains {
     pub(crate) fn owner(&self, joint: usize) -> (usize, usize) {
         let finger = self.fingers.iter().rposition(|chain| chain.first <= joint).unwrap_or(0);
         (finger, joint - self.fingers[finger].first)
-    }
-
-    /// What the joints of a finger can do at its contact at `p_OC` (m) with the inward unit normal `n_O`.
-    ///
-    /// A revolute joint moves the fingertip's point at p with axis × (p - origin), a prismatic one with its axis.
-    pub(crate) fn rows(&self, finger: usize, frames: &Frames, p_OC: &Vec3, n_O: &Vec3) -> Vec<Row> {
-        let chain = &self.fingers[finger];
-        let to_O = frames.X_HO.rotation.inverse();
-        let p_HC = frames.X_HO.rotation * p_OC + frames.X_HO.translation.vector;
-        let row = |(j, joint): (usize, &Joint)| {
-            let X_HJ = &frames.X_HL[chain.first + j];
-            let axis_H = X_HJ.rotation * joint.axis.into_inner();
-            let (velocity_H, turn_O) = match joint.kind {
-                JointKind::Revolute => (axis_H.cross(&(p_HC - X_HJ.translation.vector)), to_O * axis_H),
-                JointKind::Prismatic => (axis_H, Vec3::zeros()),
-            };
-            Row { column_O: to_O * velocity_H, spin: turn_O.dot(n_O), limit: joint.effort }
-        };
-        chain.joints.iter().enumerate().map(row).collect()
     }
 
     /// Every joint, counted through.

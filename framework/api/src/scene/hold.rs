@@ -13,7 +13,7 @@ pub struct HoldDescription {
     /// keeps the plan that needs least.
     pub friction_factor: FrictionFactor,
     /// Largest disturbing force (N) and torque (N·m) at the centre of mass, in any direction, which must be held beside the weight.
-    #[schemars(inner(range(min = 0.0, max = 1e4)))]
+    #[schemars(inner(range(min = 0.0, max = 1e4)), extend("x-unit" = "N"))]
     pub disturbance: [f64; 2],
     /// Largest normal force of one contact (N), for fragile objects; where absent the joints' efforts alone bound it.
     #[serde(skip_serializing_if = "Option::is_none")]

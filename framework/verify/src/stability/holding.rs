@@ -1,6 +1,7 @@
 //! Forces within the joints' efforts that hold the object's weight and a load, at a share of the friction: a proof by arithmetic.
 
 use super::force::{Contact, Correction, Forces, LEAST_SLACK};
+use super::held::Held;
 use super::load::icosahedron;
 use super::socp;
 use crate::contact_checks::Touch;
@@ -15,33 +16,6 @@ use regrasp_plan::{Claims, ConeClaim, Place};
 const MOST_FAILURES: usize = 100;
 /// The part of the solver's slack below which carried forces are no longer taken.
 const DWINDLED: f64 = 0.4;
-
-/// One joint behind a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Row {
-    /// Velocity of the fingertip's point at the contact per joint speed, in O.
-    pub(crate) column_O: Vec3,
-    /// Angular velocity about the inward normal per joint speed.
-    pub(crate) spin: f64,
-    /// Largest effort (N·m; N).
-    pub(crate) limit: f64,
-}
-
-impl Row {
-    /// Effort over its limit per unit of normal, tangential (a vector) and torsional force in the contact's scaled coordinates, times `unit` (N).
-    pub(crate) fn of(&self, contact: &Contact, length: f64, unit: f64) -> (f64, Vec3, f64) {
-        let scale = unit / self.limit;
-        let column = self.column_O * scale;
-        (column.dot(&contact.n), column * contact.mu, self.spin * contact.gamma * length * scale)
-    }
-}
-
-/// A grasp with what the joints behind it can do.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Held {
-    pub(crate) contacts: Vec<Contact>,
-    pub(crate) rows: Vec<Vec<Row>>,
-}
 
 /// Follows the forces that hold the object along a plan that claims that they do.
 pub(crate) struct HoldingCheck {

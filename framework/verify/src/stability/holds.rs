@@ -1,7 +1,7 @@
 //! What the plan's own forces hold: arithmetic on the forces that its states record.
 
 use super::force::{Contact, Correction, Force, Forces};
-use super::holding::{Held, Row};
+use super::held::{Held, Row};
 use super::load::icosahedron;
 use crate::hand::Chains;
 use crate::track::{Frames, Leg};

@@ -4,6 +4,7 @@
 //! J. Trinkle, Z. Li, "Grasp analysis as linear matrix inequality problems", IEEE T-RA 2000.
 
 mod force;
+mod held;
 mod holding;
 mod holds;
 mod load;
@@ -13,7 +14,7 @@ use crate::contact_checks::Touch;
 use crate::track::{Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use force::{Contact, LEAST_SLACK, Proof};
-pub(crate) use holding::{HoldingCheck, Row};
+pub(crate) use holding::HoldingCheck;
 pub(crate) use holds::HoldsCheck;
 use load::LoadCheck;
 use regrasp_api::{MAX_FINGERS, Rotation, Vec3};

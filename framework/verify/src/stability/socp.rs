@@ -1,7 +1,7 @@
 //! The best internal force of a grasp, found by an interior-point solver.
 
 use super::force::{Contact, Force, Forces};
-use super::holding::Held;
+use super::held::Held;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use nalgebra::Vector6;
