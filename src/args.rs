@@ -27,6 +27,7 @@ pub enum Command {
     Export(crate::export::ExportArgs),
     Replay(crate::replay::ReplayArgs),
     Hand(crate::hand::HandArgs),
+    Object(crate::object::ObjectArgs),
     Plugins(PluginsArgs),
     Scenarios(ScenariosArgs),
     Schema(SchemaArgs),

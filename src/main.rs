@@ -13,6 +13,7 @@ mod holds;
 mod man;
 mod new_plugin;
 mod numbers;
+mod object;
 mod outputs;
 mod overrides;
 mod plan;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Command::Export(args) => export::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Hand(args) => hand::run(args),
+        Command::Object(args) => object::run(args),
         Command::Plugins(args) => plugins::run(args),
         Command::Scenarios(args) => scenarios::run(args),
         Command::Schema(args) => schema::run(args),

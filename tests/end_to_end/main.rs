@@ -9,5 +9,6 @@ mod golden;
 mod hold;
 mod json_errors;
 mod outputs;
+mod rough;
 mod search;
 mod wording;

@@ -51,6 +51,7 @@
 
 mod configuration;
 mod context;
+mod digest;
 mod effort;
 mod error;
 mod fault;
@@ -77,6 +78,7 @@ mod task;
 
 pub use configuration::*;
 pub use context::*;
+pub use digest::mesh_digest;
 pub use effort::*;
 pub use error::*;
 pub use fault::*;

@@ -69,6 +69,42 @@ pub enum MeshError {
         /// End of the first open edge (m).
         to: [f64; 3],
     },
+    /// A vertex lies on an open edge.
+    #[error(
+        "the mesh is not closed: the vertex at {vertex:.5?} lies on the edge from {from:.5?} to {to:.5?} and splits it on one side only (a T-junction); split the facet on the other side there, too"
+    )]
+    TJunction {
+        /// The vertex (m).
+        vertex: [f64; 3],
+        /// Start of the open edge (m).
+        from: [f64; 3],
+        /// Its end (m).
+        to: [f64; 3],
+    },
+    /// Two vertices that nearly meet.
+    #[error(
+        "the mesh is not closed: the vertices at {a:.6?} and {b:.6?} are {apart:.1e} m apart and not one; merge vertices that are so near"
+    )]
+    Seam {
+        /// One vertex (m).
+        a: [f64; 3],
+        /// The other (m).
+        b: [f64; 3],
+        /// Their distance (m).
+        apart: f64,
+    },
+    /// Two facets with the same corners.
+    #[error(
+        "facets {first} and {second} have the same corners, near {at:.5?}; remove one of them, or both if they form a wall without thickness"
+    )]
+    Duplicated {
+        /// One facet, counted from 0.
+        first: usize,
+        /// The other.
+        second: usize,
+        /// Where they are (m).
+        at: [f64; 3],
+    },
     /// An edge with more than two facets, or two facets of opposite orientation.
     #[error(
         "the edge from {from:.5?} to {to:.5?} belongs to more than two facets or to facets of opposite orientation; orient and repair the mesh"

@@ -43,6 +43,18 @@ pub enum Primitive {
     },
 }
 
+/// A surface that fingertips touch in place of a rough mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Twin {
+    /// The surface, in O.
+    pub mesh: Mesh,
+    /// How far at most (m) a fingertip that touches the twin is from touching the object, and how deep at
+    /// most it enters it.
+    pub bound: f64,
+    /// What was wished of the bound (m).
+    pub tolerance: f64,
+}
+
 /// The rigid object. Its frame is O; the mesh is its true surface.
 #[derive(Clone, Debug)]
 pub struct ObjectModel {
@@ -58,6 +70,8 @@ pub struct ObjectModel {
     pub inertia_OCm: Mat3,
     /// Coefficient of friction between object and fingertips, no unit.
     pub friction: f64,
+    /// What contacts live on, where that is not the mesh itself.
+    pub twin: Option<Twin>,
 }
 
 impl ObjectModel {
@@ -65,6 +79,17 @@ impl ObjectModel {
     pub fn new(mesh: Mesh, primitive: Option<Primitive>, mass: f64, friction: f64) -> Self {
         let unit = mesh.mass_properties();
         let inertia_OCm = unit.inertia_OCm * (mass / unit.volume);
-        Self { mesh, primitive, mass, p_OCm: unit.p_OCm, inertia_OCm, friction }
+        Self { mesh, primitive, mass, p_OCm: unit.p_OCm, inertia_OCm, friction, twin: None }
+    }
+
+    /// The surface that contacts live on: the twin, or the mesh itself.
+    pub fn contact_mesh(&self) -> &Mesh {
+        self.twin.as_ref().map_or(&self.mesh, |twin| &twin.mesh)
+    }
+
+    /// How far (m) a touching fingertip may be from the true surface, on either side; 0 where contacts live
+    /// on the mesh.
+    pub fn contact_bound(&self) -> f64 {
+        self.twin.as_ref().map_or(0.0, |twin| twin.bound)
     }
 }

@@ -23,6 +23,7 @@ mod xml;
 pub use error::ExportError;
 pub use grasps::{GraspRecord, Grasps};
 pub use scene::Scene;
+pub use urdf::stl;
 
 /// One file of an export.
 #[derive(Clone, Debug, PartialEq)]

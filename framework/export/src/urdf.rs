@@ -176,7 +176,7 @@ fn origin(xml: &mut Xml, X: &Pose) {
 }
 
 /// A mesh as a binary STL file (32-bit floating-point numbers).
-pub(crate) fn stl(mesh: &Mesh) -> Vec<u8> {
+pub fn stl(mesh: &Mesh) -> Vec<u8> {
     let mut bytes = format!("{:<80}", concat!("regrasp ", env!("CARGO_PKG_VERSION"))).into_bytes();
     bytes.extend((mesh.facets().len() as u32).to_le_bytes());
     for facet in 0..mesh.facets().len() as u32 {

@@ -43,6 +43,7 @@ pub struct ContactSurface {
     pub facets: Vec<[u32; 3]>,
     /// A digest of the mesh that it was made from, in hexadecimal digits.
     pub digest: String,
-    /// No point of either surface is farther than this from the other surface (m).
+    /// How far a fingertip that touches the twin is at most from touching the object's own surface, and how
+    /// deep it enters it (m).
     pub bound: f64,
 }

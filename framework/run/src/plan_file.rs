@@ -2,10 +2,10 @@
 
 use crate::cones::Cones;
 use crate::{RunError, Setup};
-use regrasp_api::{Criterion, FrictionFactor, HoldLoad, Problem};
+use regrasp_api::{Criterion, FrictionFactor, HoldLoad, ObjectModel, Problem, Twin, mesh_digest};
 use regrasp_plan::{
-    Claims, ContactClaim, Facets, Format, MarginFrame, ObjectRecord, Plan, PluginChoice, ResolvedScenario,
-    StoppedBy, TransferLaw, VERSION,
+    Claims, ContactClaim, ContactSurface, Facets, Format, MarginFrame, ObjectRecord, Plan, PluginChoice,
+    ResolvedScenario, StoppedBy, TransferLaw, VERSION,
 };
 use regrasp_planner::Outcome;
 use serde_json::Value;
@@ -42,11 +42,13 @@ impl Setup<'_> {
         })
     }
 
-    /// The facets of a primitive; a mesh stands in the scenario.
+    /// The facets of a primitive, a mesh standing in the scenario; and the surface that contacts live on,
+    /// where that is not the object's own.
     fn object_record(&self) -> Option<ObjectRecord> {
         let object = &self.scenario.object;
-        object.primitive?;
-        Some(ObjectRecord { surface: Some(Facets::from(&object.mesh)), contact_surface: None })
+        let surface = object.primitive.map(|_| Facets::from(&object.mesh));
+        let contact_surface = object.twin.as_ref().map(|twin| contact_surface(object, twin));
+        (surface.is_some() || contact_surface.is_some()).then_some(ObjectRecord { surface, contact_surface })
     }
 
     pub(super) fn resolved_scenario(&self, problem: &Problem) -> ResolvedScenario {
@@ -80,5 +82,14 @@ fn criterion(of_test: Criterion, problem: &Problem) -> Criterion {
             Criterion::Holding(HoldLoad { friction_factor, ..load })
         }
         (criterion, _) => criterion,
+    }
+}
+
+fn contact_surface(object: &ObjectModel, twin: &Twin) -> ContactSurface {
+    ContactSurface {
+        vertices: twin.mesh.vertices().iter().map(|&v| v.into()).collect(),
+        facets: twin.mesh.facets().to_vec(),
+        digest: mesh_digest(&object.mesh),
+        bound: twin.bound,
     }
 }

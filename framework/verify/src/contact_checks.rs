@@ -2,6 +2,8 @@
 
 use crate::hand::Chains;
 use crate::scene::Scene;
+use crate::solid::Solid;
+use crate::surface::SurfaceCheck;
 use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use nalgebra::Point3;
@@ -22,9 +24,19 @@ pub(crate) struct Touch {
 }
 
 impl Touch {
-    /// Where the ball of `radius` about `p_OTip` comes closest to the object.
+    /// Where the ball of `radius` about `p_OTip` comes closest to what contacts live on.
     pub(crate) fn find(scene: &Scene, p_OTip: &Vec3, radius: f64, near: u32) -> Self {
-        let closest = scene.object.closest(p_OTip, near);
+        Self::on(&scene.touched, p_OTip, radius, near)
+    }
+
+    /// Where it comes closest to the object's own surface.
+    pub(crate) fn of_object(scene: &Scene, p_OTip: &Vec3, radius: f64, near: u32) -> Self {
+        Self::on(&scene.object, p_OTip, radius, near)
+    }
+
+    /// Where it comes closest to a solid.
+    pub(crate) fn on(solid: &Solid, p_OTip: &Vec3, radius: f64, near: u32) -> Self {
+        let closest = solid.closest(p_OTip, near);
         let away = p_OTip - closest.point;
         let (side, distance) = (if closest.inside { -1.0 } else { 1.0 }, away.norm());
         // At no distance there is no direction; the gap is then minus the whole radius, which no tolerance allows.
@@ -44,6 +56,7 @@ pub(crate) struct ContactChecks<'s> {
     law: TransferLaw,
     rolling: [Option<Rolling>; MAX_FINGERS],
     facets: [u32; MAX_FINGERS],
+    surface: SurfaceCheck,
 }
 
 /// How one contact has moved since its finger touched down.
@@ -93,6 +106,7 @@ impl Rolling {
 impl<'s> ContactChecks<'s> {
     pub(crate) fn new(hand: &'s Chains, scene: &'s Scene, tolerances: &Tolerances, law: TransferLaw) -> Self {
         Self {
+            surface: SurfaceCheck::new(scene, hand.tip_radius, tolerances.closure),
             hand,
             scene,
             closure: Gauge::new("closure", "m", Side::AtMost, tolerances.closure),
@@ -121,6 +135,7 @@ impl<'s> ContactChecks<'s> {
             let fraction = sample as f64 / SAMPLES as f64;
             let place = || Place { finger: Some(finger), ..leg.between(state, fraction) };
             self.closure.note(touch.gap.abs(), place);
+            self.surface.contact(self.scene, finger, &frames.p_OTip(finger), place);
             if sample.is_multiple_of(SAMPLES) {
                 self.compare(
                     claimed,
@@ -223,7 +238,8 @@ impl<'s> ContactChecks<'s> {
         (extreme(&self.closure), extreme(&self.slip))
     }
 
-    pub(crate) fn checks(self) -> [Check; 4] {
-        [self.closure.check(), self.normals.check(), self.slip.check(), self.jumps.check()]
+    pub(crate) fn checks(self) -> Vec<Check> {
+        let checks = [self.closure, self.normals, self.slip, self.jumps].map(Gauge::check);
+        checks.into_iter().chain(self.surface.check()).collect()
     }
 }

@@ -20,6 +20,7 @@ mod series;
 mod shape;
 mod solid;
 mod stability;
+mod surface;
 mod track;
 mod verdict;
 mod walk;

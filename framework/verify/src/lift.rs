@@ -17,8 +17,10 @@ const HALVINGS: u32 = 10;
 struct Instant {
     state: usize,
     fraction: f64,
-    /// The ball's distance from the surface (m).
+    /// The ball's distance from what contacts live on (m).
     height: f64,
+    /// The same, or its distance from the object's own surface if that is less (m).
+    free: f64,
     p_OTip: Vec3,
 }
 
@@ -62,7 +64,15 @@ impl<'s> LiftCheck<'s> {
         let touch = Touch::find(self.scene, &p_OTip, self.hand.tip_radius, self.facet);
         self.facet = touch.facet;
         let fraction = sample as f64 / SAMPLES as f64;
-        self.row.push(Instant { state, fraction, height: touch.gap, p_OTip });
+        let free = self.free(&touch, &p_OTip);
+        self.row.push(Instant { state, fraction, height: touch.gap, free, p_OTip });
+    }
+
+    fn free(&self, touch: &Touch, p_OTip: &Vec3) -> f64 {
+        if !self.scene.has_twin() {
+            return touch.gap;
+        }
+        touch.gap.min(Touch::of_object(self.scene, p_OTip, self.hand.tip_radius, 0).gap)
     }
 
     /// Judges the whole regrasp; says whether the finger was lifted.
@@ -87,7 +97,7 @@ impl<'s> LiftCheck<'s> {
             self.retreat(leg, finger, &mut row[to..].iter().rev());
         }
         for instant in &row[from..=to.max(from)] {
-            clearance.take_tip(finger, instant.height, || leg.between(instant.state, instant.fraction));
+            clearance.take_tip(finger, instant.free, || leg.between(instant.state, instant.fraction));
         }
         for pair in row[from..=to.max(from)].windows(2) {
             self.certify(leg, finger, (&pair[0], &pair[1]), 0, clearance);
@@ -127,8 +137,8 @@ impl<'s> LiftCheck<'s> {
         let body = self.scene.bodies.iter().position(|solidity| solidity.body == tip);
         let motion = body.map_or(0.0, |body| self.scene.motion(body, leg, state)) * (end - start);
         let target = clearance.target();
-        let bound = (a.height + b.height - motion) / 2.0;
-        if bound > target || a.height.min(b.height) <= target {
+        let bound = (a.free + b.free - motion) / 2.0;
+        if bound > target || a.free.min(b.free) <= target {
             return; // Clear, or known not to be.
         }
         let fraction = (start + end) / 2.0;
@@ -138,9 +148,10 @@ impl<'s> LiftCheck<'s> {
         }
         self.spare.place(self.hand, leg, state, fraction);
         let p_OTip = self.spare.p_OTip(finger);
-        let height = Touch::find(self.scene, &p_OTip, self.hand.tip_radius, self.facet).gap;
-        clearance.take_tip(finger, height, || leg.between(state, fraction));
-        let middle = Instant { state, fraction, height, p_OTip };
+        let touch = Touch::find(self.scene, &p_OTip, self.hand.tip_radius, self.facet);
+        let free = self.free(&touch, &p_OTip);
+        clearance.take_tip(finger, free, || leg.between(state, fraction));
+        let middle = Instant { state, fraction, height: touch.gap, free, p_OTip };
         let end = Instant { state, fraction: end, ..*b };
         self.certify(leg, finger, (a, &middle), depth + 1, clearance);
         self.certify(leg, finger, (&middle, &end), depth + 1, clearance);

@@ -12,6 +12,11 @@ use std::sync::Arc;
 /// The scene's bodies, one entry for each shape.
 pub(crate) struct Scene {
     pub(crate) object: Arc<Solid>,
+    /// What contacts live on: the object itself, or the twin that the plan holds.
+    pub(crate) touched: Arc<Solid>,
+    /// How far (m) a fingertip that touches the twin may be from touching the object, and how deep it may
+    /// enter it.
+    pub(crate) bound: f64,
     /// Largest distance of the object's surface from its frame's origin (m).
     object_reach: f64,
     pub(crate) bodies: Vec<Solidity>,
@@ -42,8 +47,14 @@ impl Scene {
         travel: &[f64],
     ) -> Result<Self, String> {
         let solid = Arc::new(Solid::new(&object.mesh)?);
+        let (touched, bound) = match &object.twin {
+            Some(twin) => (Arc::new(Solid::new(&twin.mesh)?), twin.bound),
+            None => (solid.clone(), 0.0),
+        };
         let mut scene = Self {
             object: solid.clone(),
+            touched,
+            bound,
             object_reach: object.mesh.radius(),
             bodies: Vec::new(),
             pairs: Vec::new(),
@@ -61,6 +72,11 @@ impl Scene {
         scene.add_fingers(problem, hand, travel)?;
         scene.pair_up(problem, hand)?;
         Ok(scene)
+    }
+
+    /// Whether contacts live on a surface of their own.
+    pub(crate) fn has_twin(&self) -> bool {
+        !Arc::ptr_eq(&self.object, &self.touched)
     }
 
     fn add_fingers(&mut self, problem: &Problem, hand: &Chains, travel: &[f64]) -> Result<(), String> {

@@ -64,6 +64,22 @@ impl Solid {
         Closest { point: from_vector(projection.point), inside: projection.is_inside, facet }
     }
 
+    pub(crate) fn facet_count(&self) -> u32 {
+        self.mesh.num_triangles() as u32
+    }
+
+    /// The corners of a facet (m), and its outward normal.
+    pub(crate) fn corners(&self, facet: u32) -> ([Vec3; 3], Vec3) {
+        let Triangle { a, b, c } = self.triangle(facet);
+        let [a, b, c] = [a, b, c].map(from_vector);
+        ([a, b, c], (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_else(Vec3::zeros))
+    }
+
+    /// The area of the surface (m²).
+    pub(crate) fn area(&self) -> f64 {
+        (0..self.facet_count()).map(|facet| self.triangle(facet).area()).sum()
+    }
+
     pub(crate) fn contains(&self, p: &Vec3) -> bool {
         self.closest(p, 0).inside
     }

@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::stability::{HoldingCheck, HoldsCheck, StabilityCheck};
 use crate::track::{self, Frames, Leg, SAMPLES};
 use crate::verdict::{Gauge, Verdict};
-use crate::{claims, controller, ends, motion_checks, object, rates};
+use crate::{claims, controller, ends, motion_checks, object, rates, surface};
 use regrasp_api::{MAX_FINGERS, ObjectModel, Tolerances, Vec3};
 use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 
@@ -32,6 +32,7 @@ use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 /// | `normals` | the plan's normals are those of the surface |
 /// | `slip` | no contact slips in sum from its finger's touch-down to its lift, over however many segments; a regrasp that does not rise to the lift height counts as sliding; by the law of fixed points, none leaves its place on the object |
 /// | `contact-jumps` | no contact point jumps in a transfer |
+/// | `contact-surface` | where contacts live on a twin of the mesh: a fingertip that touches it is no farther from the mesh, and enters it no deeper, than the bound that the plan states; at every sample of the motion, and all over the twin |
 /// | `lift`, `touch-travel` | a moving fingertip rises until it is lifted, and does not slide while it touches |
 /// | `clearance` | every pair that may not touch keeps its distance, also between the samples |
 /// | `stability` | the fingers that hold prove force closure, or what else the plan claims: forces that hold the load, at every sample; in a regrasp the others do, both ends included |
@@ -65,7 +66,9 @@ fn refuse(note: String) -> Verdict {
 pub(crate) fn prepare(plan: &Plan) -> Result<(Chains, ObjectModel), String> {
     let hand = Chains::new(&plan.scenario.problem.hand)?;
     object::check_limits(&plan.scenario.problem.limits)?;
-    Ok((hand, object::object_of(plan)?))
+    let mut object = object::object_of(plan)?;
+    object.twin = surface::twin(plan, &object, hand.tip_radius)?;
+    Ok((hand, object))
 }
 
 /// How far from zero each joint comes, by its limits or by the plan.

@@ -1,5 +1,6 @@
 //! Why a description of a hand, an object or a scene is refused.
 
+use crate::bodies::BodyFault;
 use crate::hand::HandError;
 use regrasp_api::{MeshError, MeshSourceError, PoseError, Refusal, Refuse};
 use thiserror::Error;
@@ -45,6 +46,14 @@ pub enum WorldError {
         /// What is wrong with the mesh, and the fix.
         source: MeshError,
     },
+    /// A mesh that is no rigid object.
+    #[error("`{key}`: {fault}")]
+    Body {
+        /// The path of the key.
+        key: String,
+        /// Why, and the fix.
+        fault: BodyFault,
+    },
 }
 
 impl Refuse for WorldError {
@@ -56,7 +65,7 @@ impl Refuse for WorldError {
             Self::Value { key, .. } => Refusal::new("value", self).key(key),
             Self::Pose { key, error } => error.refusal().told(self).below(key),
             Self::Hand(error) => error.refusal().told(self).below("hand"),
-            Self::Mesh { key, .. } => Refusal::new("mesh", self).key(key),
+            Self::Mesh { key, .. } | Self::Body { key, .. } => Refusal::new("mesh", self).key(key),
         }
     }
 }

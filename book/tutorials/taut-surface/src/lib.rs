@@ -69,7 +69,7 @@ impl Taut {
     /// The surface of an object; refuses one that is not convex.
     pub fn new(settings: TautSettings, parts: &Parts<'_>) -> Result<Self, BuildError> {
         settings.validate()?;
-        let mesh = parts.object.mesh.clone();
+        let mesh = parts.object.contact_mesh().clone();
         if !mesh.is_locally_convex() {
             let reason = "the object is not convex; use `surface/geodesic`, which takes any closed mesh";
             return Err(BuildError::Unsupported(reason.into()));

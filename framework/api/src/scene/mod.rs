@@ -1,5 +1,6 @@
 //! Descriptions: hand, object, obstacles, start and goals as plain data, the way files hold them. SI units.
 
+mod contact_surface;
 mod hand;
 mod hold;
 mod limits;
@@ -8,6 +9,7 @@ mod object;
 mod pose;
 mod problem;
 
+pub use contact_surface::*;
 pub use hand::*;
 pub use hold::*;
 pub use limits::*;

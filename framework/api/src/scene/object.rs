@@ -1,6 +1,6 @@
 //! Shapes, objects and obstacles.
 
-use super::{MeshSource, PoseDescription};
+use super::{ContactSurface, MeshSource, PoseDescription};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -166,6 +166,19 @@ pub struct ObjectDescription {
     /// Coefficient of friction between object and fingertips (no unit).
     #[schemars(range(min = 0.0, max = 10.0), extend("x-unit" = "1"))]
     pub friction: f64,
+    /// What fingertips touch: `"auto"`, `"exact"` or `{ tolerance = 3e-4 }` (m). Default `"auto"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(example = &"exact")]
+    pub contact_surface: Option<ContactSurface>,
+    /// Whether bodies of the mesh that do not touch are fixed to each other all the same. Default false: they
+    /// are refused.
+    #[serde(default, skip_serializing_if = "is_false")]
+    #[schemars(example = true)]
+    pub assembly: bool,
+}
+
+fn is_false(yes: &bool) -> bool {
+    !yes
 }
 
 fn default_facets() -> usize {

@@ -115,6 +115,10 @@ impl<'a> Walk<'a> {
         if let Some(tag) = alternatives.iter().find_map(|schema| tag_of(schema)) {
             return self.check_tagged(value, &alternatives, tag, path);
         }
+        // A word or a table: each is judged as what it is.
+        if let (Some(words), Some(table)) = (words_among(&alternatives), table_among(&alternatives)) {
+            return self.check(value, if value.is_object() { table } else { words }, path);
+        }
         // What is left is an option: the value may be null or something else.
         let something = alternatives.iter().find(|schema| schema.get("type") != Some(&Value::from("null")));
         match something {
@@ -145,6 +149,20 @@ impl<'a> Walk<'a> {
             }
         }
     }
+}
+
+/// The alternative that lists words.
+fn words_among<'a>(alternatives: &[&'a Value]) -> Option<&'a Value> {
+    let is_word = |schema: &Value| schema.get("const").is_some() || schema.get("enum").is_some();
+    let is_words = |schema: &&&Value| {
+        let several = schema.get("oneOf").and_then(Value::as_array);
+        is_word(schema) || several.is_some_and(|several| several.iter().all(is_word))
+    };
+    alternatives.iter().find(is_words).copied()
+}
+
+fn table_among<'a>(alternatives: &[&'a Value]) -> Option<&'a Value> {
+    alternatives.iter().find(|schema| schema.get("type") == Some(&Value::from("object"))).copied()
 }
 
 /// The key whose constant value tells the alternatives of a tagged enumeration apart.
@@ -314,6 +332,21 @@ mod tests {
         assert_eq!(text, "`resolution.retreat[1]` = -0.5 is outside 0..=0.2 m");
         let text = refusal::<Limits>(json!({"budget": {"max_nodes": 1.5}}));
         assert_eq!(text, "`budget.max_nodes`: 1.5 is not a whole number");
+    }
+
+    #[test]
+    fn a_word_or_a_table_is_judged_as_what_it_is() {
+        let with = |surface: Value| json!({"shape": {"kind": "sphere", "radius": 1}, "friction": 0.5, "contact_surface": surface});
+        let schema = schema_of::<ObjectDescription>();
+        for good in [json!("auto"), json!("exact"), json!({"tolerance": 1e-4}), Value::Null] {
+            assert_eq!(check_schema(&with(good), &schema), Ok(()));
+        }
+        let text = refusal::<ObjectDescription>(with(json!("exakt")));
+        assert!(text.contains("did you mean `exact`?"), "{text}");
+        let text = refusal::<ObjectDescription>(with(json!({"tolerance": 1})));
+        assert!(text.contains("`contact_surface.tolerance` = 1 is outside"), "{text}");
+        let text = refusal::<ObjectDescription>(with(json!({"tolerence": 1e-4})));
+        assert!(text.contains("did you mean `tolerance`?"), "{text}");
     }
 
     #[test]

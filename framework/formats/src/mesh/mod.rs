@@ -1,15 +1,17 @@
 //! Meshes from STL, OBJ, PLY and COLLADA files or given in place.
 
 mod collada;
+mod heal;
 mod obj;
 mod ply;
 mod polygon;
+mod reason;
 mod stl;
 mod text;
 mod weld;
 
 use crate::error::FormatError;
-use regrasp_api::{MAX_FACETS, Mesh, MeshSource, Vec3};
+use regrasp_api::{MAX_FACETS, Mesh, MeshSource, MeshSourceError, Vec3};
 use std::path::Path;
 
 /// The largest mesh file (bytes): an ASCII STL of [`MAX_FACETS`] facets is smaller.
@@ -20,8 +22,9 @@ type Raw = (Vec<Vec3>, Vec<[u32; 3]>);
 
 /// The mesh of `source`, in metres; a file is looked for relative to the folder `base`.
 ///
-/// Vertices of a file at equal coordinates are merged, and vertices that no facet uses are dropped. `key` is
-/// the path of the source in its description, for messages.
+/// Vertices of a file at equal coordinates are merged; those that differ by less than a millionth of the
+/// mesh's size are too where only that closes the mesh. Facets without area are left out where the rest stays
+/// closed, and vertices that no facet uses. `key` is the path of the source in its description, for messages.
 pub fn load_mesh(source: &MeshSource, base: &Path, key: &str) -> Result<Mesh, FormatError> {
     match &source.file {
         Some(file) if !source.is_written_out() => from_file(source, &base.join(file), key),
@@ -29,10 +32,35 @@ pub fn load_mesh(source: &MeshSource, base: &Path, key: &str) -> Result<Mesh, Fo
     }
 }
 
+/// Vertices nearer than this, as part of the mesh's size, are one if that closes the mesh.
+const NEARLY_EQUAL: f64 = 1e-6;
+
 fn from_file(source: &MeshSource, path: &Path, key: &str) -> Result<Mesh, FormatError> {
     let fail = |reason| FormatError::File { key: format!("{key}.file"), path: path.into(), reason };
-    let (vertices, facets) = weld::welded(read(path).map_err(fail)?);
-    source.adjusted(vertices, facets).map_err(|error| FormatError::source(key, Some(path), error))
+    let raw = weld::welded(read(path).map_err(fail)?);
+    let (first, _) = heal::healed(raw.clone());
+    let error = match source.adjusted(first.0.clone(), first.1.clone()) {
+        Ok(mesh) => return Ok(mesh),
+        Err(error) => error,
+    };
+    let MeshSourceError::Mesh(fault) = error else { return Err(FormatError::source(key, Some(path), error)) };
+    if let Some(mesh) = nearly_closed(source, raw) {
+        return Ok(mesh);
+    }
+    let scale = source.scale.unwrap_or(1.0);
+    let vertices: Vec<Vec3> = first.0.iter().map(|v| v * scale).collect();
+    let true_fault = MeshSourceError::Mesh(reason::reason(&vertices, &first.1, fault));
+    Err(FormatError::source(key, Some(path), true_fault))
+}
+
+/// The mesh with vertices that differ by rounding made one, if that makes it sound.
+fn nearly_closed(source: &MeshSource, raw: Raw) -> Option<Mesh> {
+    let size = raw.0.iter().map(|v| v.amax()).fold(0.0, f64::max);
+    if size <= 0.0 {
+        return None;
+    }
+    let ((vertices, facets), _) = heal::healed(weld::welded_within(raw, NEARLY_EQUAL * size));
+    source.adjusted(vertices, facets).ok()
 }
 
 /// Vertices and facets as a file has them, vertices at equal coordinates merged: for uses that need no
@@ -55,7 +83,7 @@ fn read(path: &Path) -> Result<Raw, String> {
         std::io::ErrorKind::FileTooLarge => format!("{error}; simplify the mesh"),
         _ => error.to_string(),
     })?;
-    let raw = parse(&bytes)?;
+    let raw = parse(&text::plain(bytes))?;
     check_count(raw.1.len())?;
     Ok(raw)
 }
@@ -67,5 +95,7 @@ fn check_count(facets: usize) -> Result<(), String> {
     Err(format!("{facets} facets are more than the largest allowed {MAX_FACETS}; simplify the mesh"))
 }
 
+#[cfg(test)]
+mod dialects;
 #[cfg(test)]
 mod tests;

@@ -3,11 +3,13 @@
 use super::{Raw, polygon::triangulate};
 use regrasp_api::Vec3;
 
-/// Coordinates of the element `vertex` and triangulated `vertex_indices` of the element `face`; the rest is
-/// skipped.
+/// Coordinates of the element `vertex`, and the triangulated `vertex_indices` of the elements `face` and
+/// `tristrips`, in whatever order they come; the rest is skipped.
 pub(super) fn parse(bytes: &[u8]) -> Result<Raw, String> {
     let (header, mut body) = Header::parse(bytes)?;
-    let (mut vertices, mut facets) = (Vec::new(), Vec::new());
+    let count =
+        header.elements.iter().find(|element| element.name == "vertex").map_or(0, |element| element.count);
+    let (mut vertices, mut polygons, mut facets) = (Vec::new(), Vec::new(), Vec::new());
     for element in &header.elements {
         if element.properties.is_empty() {
             continue;
@@ -18,14 +20,16 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Raw, String> {
             let values = Row::read(element, header.encoding, &mut body).ok_or_else(truncated)?;
             match element.name.as_str() {
                 "vertex" => vertices.push(values.vertex(row)?),
-                "face" => {
-                    let corners = values.corners(row, vertices.len())?;
-                    triangulate(&corners, &vertices, &mut facets);
-                    super::check_count(facets.len())?;
-                }
+                "face" => polygons.push(values.corners(row, count)?),
+                "tristrips" => values.strips(row, count, &mut facets)?,
                 _ => (),
             }
+            super::check_count(facets.len().max(polygons.len()))?;
         }
+    }
+    for corners in polygons {
+        triangulate(&corners, &vertices, &mut facets);
+        super::check_count(facets.len())?;
     }
     Ok((vertices, facets))
 }
@@ -229,5 +233,20 @@ impl Row {
             known.then_some(index as u32).ok_or_else(|| format!("face {row} names vertex {index} of {count}"))
         };
         self.corners.iter().map(corner).collect()
+    }
+    /// The triangles of strips, which end at an index of -1.
+    fn strips(&self, row: usize, count: usize, facets: &mut Vec<[u32; 3]>) -> Result<(), String> {
+        for strip in self.corners.split(|&index| index == -1.0) {
+            let known = |&index: &f64| (0.0..count as f64).contains(&index);
+            if let Some(bad) = strip.iter().find(|index| !known(index)) {
+                return Err(format!("strip {row} names vertex {bad} of {count}"));
+            }
+            let turned = |(i, w): (usize, &[f64])| {
+                let [a, b, c] = [w[0] as u32, w[1] as u32, w[2] as u32];
+                if i % 2 == 0 { [a, b, c] } else { [b, a, c] }
+            };
+            facets.extend(strip.windows(3).enumerate().map(turned));
+        }
+        Ok(())
     }
 }

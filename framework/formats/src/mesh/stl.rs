@@ -13,7 +13,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Raw, String> {
     // Binary headers may begin with "solid" too: a fitting length decides first, then zeros, which no text
     // has.
     let has_zeros = bytes.iter().take(512).any(|&byte| byte == 0);
-    if !exact && !has_zeros && bytes.trim_ascii_start().starts_with(b"solid") {
+    if !exact && !has_zeros && begins_as_text(bytes) {
         return ascii(bytes);
     }
     let count = announced.ok_or("too short for an STL file; is it truncated?")?;
@@ -27,6 +27,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Raw, String> {
         return Err(format!("the header announces {count} facets, the file holds {held}; is it truncated?"));
     }
     binary(&bytes[HEADER..HEADER + RECORD * count])
+}
+
+fn begins_as_text(bytes: &[u8]) -> bool {
+    let start = bytes.trim_ascii_start();
+    [&b"solid"[..], b"facet"].iter().any(|word| start.get(..5).is_some_and(|s| s.eq_ignore_ascii_case(word)))
 }
 
 fn announced(bytes: &[u8]) -> Option<usize> {
@@ -59,7 +64,12 @@ fn ascii(bytes: &[u8]) -> Result<Raw, String> {
     for (line, content) in text::lines(bytes) {
         let mut words = content.split_ascii_whitespace();
         let Some(word) = words.next() else { continue };
-        match word.to_ascii_lowercase().as_str() {
+        let mut word = word.to_ascii_lowercase();
+        // Some programs write the closing words apart, or the opening ones together.
+        if word == "end" {
+            word += &words.next().unwrap_or_default().to_ascii_lowercase();
+        }
+        match word.as_str() {
             "vertex" => {
                 corners.push(vertices.len() as u32);
                 vertices.push(text::point(&mut words, line)?);
@@ -68,8 +78,8 @@ fn ascii(bytes: &[u8]) -> Result<Raw, String> {
                 return Err(format!("line {line}: a facet has fewer than 3 corners"));
             }
             "endloop" => triangulate(&std::mem::take(&mut corners), &vertices, &mut facets),
-            "solid" | "endsolid" => ended = word.eq_ignore_ascii_case("endsolid"),
-            "facet" | "outer" | "endfacet" => (),
+            "solid" | "endsolid" => ended = word == "endsolid",
+            "facet" | "facetnormal" | "outer" | "outerloop" | "loop" | "endfacet" | "color" => (),
             _ => {
                 return Err(format!("line {line}: `{word}` is no word of an ASCII STL file; is it damaged?"));
             }

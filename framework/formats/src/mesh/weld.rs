@@ -26,3 +26,26 @@ pub(super) fn welded((vertices, mut facets): Raw) -> Raw {
     }
     (kept, facets)
 }
+
+/// The same with vertices at most `tolerance` apart merged too, each into the first such one.
+pub(super) fn welded_within((vertices, mut facets): Raw, tolerance: f64) -> Raw {
+    let cell = |v: &Vec3| -> [i64; 3] { v.map(|x| (x / tolerance).floor() as i64).into() };
+    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::with_capacity(vertices.len());
+    let mut place = Vec::with_capacity(vertices.len());
+    for (index, vertex) in vertices.iter().enumerate() {
+        let [x, y, z] = cell(vertex);
+        let around =
+            (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [x + i, y + j, z + k])));
+        let near = around.filter_map(|cell| cells.get(&cell)).flatten();
+        let first =
+            near.copied().filter(|&other| (vertices[other as usize] - vertex).norm() <= tolerance).min();
+        place.push(first.unwrap_or(index as u32));
+        if first.is_none() {
+            cells.entry([x, y, z]).or_default().push(index as u32);
+        }
+    }
+    for index in facets.iter_mut().flatten() {
+        *index = place.get(*index as usize).copied().unwrap_or(u32::MAX);
+    }
+    welded((vertices, facets))
+}

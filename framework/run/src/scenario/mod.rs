@@ -4,6 +4,7 @@
 //! [`ScenarioError`] with its place; start and goal grasps alone are left to the planner, which knows
 //! stability and collision.
 
+mod contact_surface;
 mod document;
 mod error;
 mod file;
@@ -19,12 +20,14 @@ pub use library::*;
 
 pub use document::{Document, is_json, key_path};
 use regrasp_api::{
-    HandDescription, MeshSource, ObjectDescription, ObjectModel, ObjectShape, Problem, Refuse, SettingsError,
-    Slot, Step, near,
+    Hand, HandDescription, MeshSource, ObjectDescription, ObjectModel, ObjectShape, Problem, Refuse,
+    SettingsError, Slot, Step, near,
 };
 use regrasp_formats::{embed_obstacles, load_mesh};
 use regrasp_host::{Choices, HostError, Registry};
-use regrasp_world::{ChainHand, check_problem, check_units, load_object, object_of_mesh};
+use regrasp_world::{
+    ChainHand, WorldError, check_problem, check_units, load_object, object_of_mesh, rigid_body,
+};
 use serde_json::Value;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -104,12 +107,13 @@ pub fn from_text(
     let content: ScenarioFile = document.read()?;
     let mut choices = choices(&document, &content.plugins, registry)?;
     hold::apply(&document, &content, &mut choices)?;
-    let hand::LoadedHand { hand, description, remarks } = hand::load(&document, &content.hand, folder)?;
+    let hand::LoadedHand { hand, description, mut remarks } = hand::load(&document, &content.hand, folder)?;
     let mut problem = problem(&content, description);
     check_problem(&problem).map_err(|error| document.refused(&error))?;
     embed_obstacles(&mut problem.obstacle, folder).map_err(|error| document.refused(&error))?;
-    let object = object(&document, &mut problem.object, folder)?;
+    let mut object = object(&document, &mut problem.object, folder)?;
     check_units(&hand, &object, &content.object.shape).map_err(|error| document.refused(&error))?;
+    remarks.extend(contact_surface::settle(&mut object, &content.object, hand.fingertip_radius(), folder));
     Ok(Scenario {
         name: content.name.clone().unwrap_or_else(|| stem(file)),
         summary: content.summary,
@@ -134,6 +138,8 @@ fn object(
         return load_object(description).map_err(|error| document.refused(&error));
     };
     let mesh = load_mesh(source, folder, "object.shape").map_err(|error| document.refused(&error))?;
+    let mesh = rigid_body(mesh, description.assembly)
+        .map_err(|fault| document.refused(&WorldError::Body { key: "object.shape".into(), fault }))?;
     *source = MeshSource::of(&mesh);
     object_of_mesh(description, mesh).map_err(|error| document.refused(&error))
 }

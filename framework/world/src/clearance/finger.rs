@@ -149,15 +149,21 @@ impl FingerBodies {
     ) -> Result<(), BodyPair> {
         let p_HMiddle = frame.point(&object.p_OMiddle);
         for (part, rod) in self.parts.iter().zip(&placed.rods) {
-            let clear = match (part.body, tip) {
+            let (wanted, is_tip) = match (part.body, tip) {
                 (Body::Fingertip(_), TipRule::Touches) => continue,
-                (Body::Fingertip(_), TipRule::Clear(wanted)) => wanted.min(clear),
-                _ => clear,
+                (Body::Fingertip(_), TipRule::Clear(wanted)) => (wanted.min(clear), true),
+                _ => (clear, false),
             };
-            let apart = rod.reach + object.radius + clear;
-            if (rod.middle() - p_HMiddle).norm_squared() > apart * apart
-                || object.clear_of_rod(&rod.seen_from(frame), clear)
-            {
+            let apart = rod.reach + object.radius + wanted;
+            if (rod.middle() - p_HMiddle).norm_squared() > apart * apart {
+                continue;
+            }
+            let rod_O = rod.seen_from(frame);
+            let is_clear = match is_tip {
+                true => object.clear_of_tip(&rod_O, wanted, clear),
+                false => object.clear_of_rod(&rod_O, wanted),
+            };
+            if is_clear {
                 continue;
             }
             if part.placed.is_rod() || !self.solid_clear_of_object(placed, part, object, (X_HO, frame), clear)

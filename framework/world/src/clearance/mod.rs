@@ -17,6 +17,8 @@ mod object;
 mod report;
 mod rod;
 
+pub(crate) use exact::MeshSolid;
+
 use crate::error::WorldError;
 use crate::hand::{ChainHand, LinkFrame};
 use body::Placed;

@@ -4,7 +4,7 @@ use super::convex::{Convex, Verdict};
 use super::exact::{MeshSolid, Solid};
 use super::field::Field;
 use super::rod::{Bounds, Rod};
-use regrasp_api::{ObjectModel, Vec3};
+use regrasp_api::{Mesh, ObjectModel, Vec3};
 use std::sync::Arc;
 
 /// The object: bounds that decide nearly always, and the exact mesh for the rest.
@@ -15,8 +15,10 @@ pub(crate) struct ObjectBody {
     /// A box that holds the mesh: its centre in O and half its size.
     hull: (Vec3, Convex),
     pub p_OMiddle: Vec3,
-    /// Radius about `p_OMiddle` of a ball that holds the mesh (m).
+    /// Radius about `p_OMiddle` of a ball that holds the mesh, and the twin (m).
     pub radius: f64,
+    /// What fingertips touch in place of a rough mesh, and how far at most the two are apart for them (m).
+    twin: Option<(Box<ObjectBody>, f64)>,
 }
 
 enum Bound {
@@ -27,10 +29,20 @@ enum Bound {
 impl ObjectBody {
     /// `wide`: the largest radius of a rod that will be asked about, and the clearance (m).
     pub fn new(object: &ObjectModel, wide: f64) -> Self {
-        let mesh = Arc::new(MeshSolid::new(&object.mesh));
+        let mut body = Self::of_mesh(object, &object.mesh, wide);
+        if let Some(twin) = &object.twin {
+            let touched = Self::of_mesh(object, &twin.mesh, wide);
+            body.radius = body.radius.max(touched.radius + (touched.p_OMiddle - body.p_OMiddle).norm());
+            body.twin = Some((Box::new(touched), twin.bound));
+        }
+        body
+    }
+
+    fn of_mesh(object: &ObjectModel, surface: &Mesh, wide: f64) -> Self {
+        let mesh = Arc::new(MeshSolid::new(surface));
         let Bounds { lower, upper } = mesh.bounds;
         let p_OMiddle = (lower + upper) * 0.5;
-        let vertices = object.mesh.vertices();
+        let vertices = surface.vertices();
         let radius = vertices.iter().map(|v| (v - p_OMiddle).norm()).fold(0.0, f64::max);
         let bound = match object.primitive.and_then(|form| Convex::around(form, planes(object))) {
             Some(convex) => Bound::Convex(convex),
@@ -44,6 +56,7 @@ impl ObjectBody {
             hull,
             p_OMiddle,
             radius: radius * (1.0 + 1e-12),
+            twin: None,
         }
     }
 
@@ -59,6 +72,15 @@ impl ObjectBody {
             Verdict::Close => false,
             Verdict::Unknown => self.mesh.clear_of_rod(rod_O, clear),
         }
+    }
+
+    /// Whether a fingertip that holds nothing, given in O, keeps `wanted` (m) from what it would touch; from
+    /// a rough mesh itself it keeps as much once that is all that is ever kept, `clear`, and on its way there
+    /// less by what the two surfaces may be apart.
+    pub fn clear_of_tip(&self, rod_O: &Rod, wanted: f64, clear: f64) -> bool {
+        let Some((twin, bound)) = &self.twin else { return self.clear_of_rod(rod_O, wanted) };
+        let from_mesh = if wanted < clear { wanted - bound } else { wanted };
+        twin.clear_of_rod(rod_O, wanted) && (from_mesh <= 0.0 || self.clear_of_rod(rod_O, from_mesh))
     }
 
     /// An upper bound of n · x over the object, x in O from O's origin (m).

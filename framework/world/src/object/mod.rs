@@ -1,6 +1,9 @@
 //! The object: from its description to mesh, mass and friction.
 
+mod measure;
 mod pattern;
+
+pub use measure::{Measures, measure};
 
 use crate::error::{WorldError, check_range};
 use regrasp_api::{

@@ -107,7 +107,14 @@ fn an_object_has_the_mass_it_was_given() {
 }
 
 fn describe(shape: ObjectShape) -> ObjectDescription {
-    ObjectDescription { name: "thing".into(), shape, mass: 0.3, friction: 0.8 }
+    ObjectDescription {
+        name: "thing".into(),
+        shape,
+        mass: 0.3,
+        friction: 0.8,
+        contact_surface: None,
+        assembly: false,
+    }
 }
 
 #[test]

@@ -18,7 +18,14 @@ fn problem() -> Problem {
     let shape = ObjectShape::Sphere { radius: 0.03, facets: 1280 };
     Problem {
         hand: four_finger(),
-        object: ObjectDescription { name: "ball".into(), shape, mass: 0.1, friction: 0.8 },
+        object: ObjectDescription {
+            name: "ball".into(),
+            shape,
+            mass: 0.1,
+            friction: 0.8,
+            contact_surface: None,
+            assembly: false,
+        },
         obstacle: vec![obstacle(""), obstacle("bar")],
         gravity: [0.0, 0.0, -9.81],
         start: StartDescription { pose: pose([0.0, 0.0, 0.085]), grasp: None },

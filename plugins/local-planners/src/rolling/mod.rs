@@ -183,7 +183,7 @@ regrasp_api::inventory::submit! {
         build: Build::LocalPlanner(|json, parts| {
             demand_fingertip(Fingertip::Ball, parts.hand)?;
             let settings = RollingSettings::from_json(json)?;
-            Ok(Box::new(Rolling::for_object(settings, parts.hand, &parts.object.mesh)?))
+            Ok(Box::new(Rolling::for_object(settings, parts.hand, parts.object.contact_mesh())?))
         }),
     }
 }

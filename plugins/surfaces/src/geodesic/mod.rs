@@ -51,7 +51,7 @@ inventory::submit! {
 
 fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
     let settings = GeodesicSettings::from_json(json)?;
-    Ok(Box::new(Geodesic::new(&settings, &parts.object.mesh, parts.hand.fingertip_radius())?))
+    Ok(Box::new(Geodesic::new(&settings, parts.object.contact_mesh(), parts.hand.fingertip_radius())?))
 }
 
 /// Settings of [`Geodesic`].

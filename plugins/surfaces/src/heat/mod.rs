@@ -67,7 +67,7 @@ inventory::submit! {
 
 fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
     let settings = HeatSettings::from_json(json)?;
-    Ok(Box::new(Heat::new(&settings, &parts.object.mesh, parts.hand.fingertip_radius())?))
+    Ok(Box::new(Heat::new(&settings, parts.object.contact_mesh(), parts.hand.fingertip_radius())?))
 }
 
 /// A vertex is a corner where its facets' angles differ from a full turn by more (rad): locally shortest paths on both sides of it can

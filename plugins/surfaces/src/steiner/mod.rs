@@ -55,7 +55,7 @@ inventory::submit! {
 
 fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
     let settings = SteinerSettings::from_json(json)?;
-    Ok(Box::new(Steiner::new(&settings, &parts.object.mesh, parts.hand.fingertip_radius())?))
+    Ok(Box::new(Steiner::new(&settings, parts.object.contact_mesh(), parts.hand.fingertip_radius())?))
 }
 
 /// Most points of one object: a spacing that needs more is refused.

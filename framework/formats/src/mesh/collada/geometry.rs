@@ -56,7 +56,16 @@ impl Kind {
         let corners = |p: Element<'_>| -> Result<Vec<u32>, String> {
             Ok(numbers::<u32>(p)?.chunks_exact(stride).map(|corner| corner[offset]).collect())
         };
-        let all = children(primitive, "p").map(corners).collect::<Result<Vec<_>, _>>()?;
+        let mut all = children(primitive, "p").map(corners).collect::<Result<Vec<_>, _>>()?;
+        for outline in children(primitive, "ph") {
+            if children(outline, "h").any(|hole| hole.text().is_some_and(|text| !text.trim().is_empty())) {
+                return Err(format!(
+                    "{}: a polygon with holes; export the mesh as triangles",
+                    place(outline)
+                ));
+            }
+            all.extend(children(outline, "p").map(corners).collect::<Result<Vec<_>, _>>()?);
+        }
         match self {
             Self::Strips | Self::Fans | Self::Polygons => Ok(all),
             Self::Triangles => Ok(all

@@ -3,17 +3,22 @@
 use super::super::{Raw, check_count};
 use super::{Element, File, child, children, geometry, numbers, place};
 use nalgebra::{Matrix4, Point3, Rotation3, Unit};
-use regrasp_api::Vec3;
+use regrasp_api::{MAX_FACETS, Vec3};
 use std::collections::BTreeMap;
 
 /// How deep nodes may lie in nodes: deeper ones instance each other in a circle.
 const DEEPEST: usize = 64;
 /// How many nodes are looked at, those that are instanced again counted again.
 const MOST_NODES: usize = 100_000;
+/// How many geometries may be added, those that are instanced again counted again.
+const MOST_INSTANCES: usize = 100_000;
+/// How many vertices may be gathered: as many as facets that share none.
+const MOST_VERTICES: usize = 3 * MAX_FACETS;
 
 /// Everything in the scene that the file shows, in the file's unit.
 pub(super) fn read(file: &File<'_>) -> Result<Raw, String> {
-    let mut reader = Reader { file, nodes: 0, known: BTreeMap::new(), all: (Vec::new(), Vec::new()) };
+    let mut reader =
+        Reader { file, nodes: 0, instances: 0, known: BTreeMap::new(), all: (Vec::new(), Vec::new()) };
     match shown(file)? {
         Some(scene) => {
             for node in children(scene, "node") {
@@ -46,6 +51,8 @@ struct Reader<'f, 'a> {
     file: &'f File<'a>,
     /// Nodes looked at so far.
     nodes: usize,
+    /// Geometries added so far, those that come again counted again.
+    instances: usize,
     /// Geometries that were read, by where they stand in the file.
     known: BTreeMap<usize, Raw>,
     all: Raw,
@@ -81,6 +88,16 @@ impl<'a> Reader<'_, 'a> {
         }
         let (vertices, facets) = &self.known[&key];
         check_count(self.all.1.len() + facets.len())?;
+        self.instances += 1;
+        if self.instances > MOST_INSTANCES || self.all.0.len() + vertices.len() > MOST_VERTICES {
+            return Err(format!(
+                "the scene instances geometries more than {MOST_INSTANCES} times, or gathers more than {MOST_VERTICES} vertices; \
+                 simplify it"
+            ));
+        }
+        if facets.is_empty() {
+            return Ok(());
+        }
         let first = self.all.0.len() as u32;
         let moved = |v: &Vec3| transform.transform_point(&Point3::from(*v)).coords;
         self.all.0.extend(vertices.iter().map(moved));

@@ -1,0 +1,82 @@
+use super::*;
+use crate::primitive_mesh;
+use regrasp_api::Primitive;
+
+/// Boxes given by centre and half size, those with `false` inside out, as one mesh.
+fn boxes(all: &[(Vec3, f64, bool)]) -> Mesh {
+    let (mut vertices, mut facets) = (Vec::new(), Vec::new());
+    for (center, half, outward) in all {
+        let cube = primitive_mesh(&Primitive::Cuboid { half_size: Vec3::repeat(*half) }, 12).unwrap();
+        let first = vertices.len() as u32;
+        vertices.extend(cube.vertices().iter().map(|v| v + center));
+        let turned = |f: &[u32; 3]| if *outward { *f } else { [f[0], f[2], f[1]] }.map(|v| v + first);
+        facets.extend(cube.facets().iter().map(turned));
+    }
+    Mesh::new(vertices, facets).unwrap()
+}
+
+fn at(x: f64) -> Vec3 {
+    Vec3::new(x, 0.1 * x, 0.07 * x)
+}
+
+#[test]
+fn what_overlapping_bodies_share_counts_once() {
+    let both = boxes(&[(at(0.0), 0.02, true), (at(0.015), 0.015, true)]);
+    let union = rigid_body(both.clone(), false).unwrap();
+    // The first reaches to 0.02 along each axis, the second from its centre - 0.015 on.
+    let shared: f64 = at(0.015).iter().map(|c| 0.02f64.min(c + 0.015) - (c - 0.015).max(-0.02)).product();
+    let wanted = 0.04f64.powi(3) + 0.03f64.powi(3) - shared;
+    assert!((union.mass_properties().volume - wanted).abs() < 1e-12, "{}", union.mass_properties().volume);
+    assert_eq!(body_count(&union), 1);
+    assert_eq!(rigid_body(both, false).unwrap(), union);
+}
+
+#[test]
+fn a_body_inside_out_that_overlaps_another_is_named() {
+    let fault = rigid_body(boxes(&[(at(0.0), 0.02, true), (at(0.015), 0.015, false)]), false).unwrap_err();
+    assert!(matches!(fault, BodyFault::InsideOut { body: 2, .. }), "{fault}");
+}
+
+#[test]
+fn a_body_within_another_is_part_of_it_and_a_turned_one_a_hollow() {
+    let nested = rigid_body(boxes(&[(at(0.0), 0.02, true), (at(0.001), 0.01, true)]), false).unwrap();
+    assert!((nested.mass_properties().volume - 0.04f64.powi(3)).abs() < 1e-15);
+    let hollow = rigid_body(boxes(&[(at(0.0), 0.02, true), (at(0.001), 0.01, false)]), false).unwrap();
+    assert!((hollow.mass_properties().volume - (0.04f64.powi(3) - 0.02f64.powi(3))).abs() < 1e-15);
+    assert_eq!(body_count(&hollow), 2);
+}
+
+#[test]
+fn a_small_body_inside_out_is_named() {
+    let fault = rigid_body(boxes(&[(at(0.0), 0.02, true), (at(0.06), 0.01, false)]), true).unwrap_err();
+    assert!(matches!(fault, BodyFault::InsideOut { body: 2, count: 2, facets: 12, .. }), "{fault}");
+}
+
+#[test]
+fn a_body_inside_out_is_turned_and_a_hollow_is_not() {
+    let mesh =
+        outward_bodies(boxes(&[(at(0.0), 0.02, true), (at(0.06), 0.01, false), (at(0.0), 0.01, false)]));
+    let wanted = 0.04f64.powi(3) + 0.02f64.powi(3) - 0.02f64.powi(3);
+    assert!((mesh.mass_properties().volume - wanted).abs() < 1e-15);
+}
+
+#[test]
+fn bodies_apart_are_an_assembly_or_refused() {
+    let mesh = || boxes(&[(at(0.0), 0.02, true), (at(0.06), 0.01, true)]);
+    assert!(matches!(rigid_body(mesh(), false), Err(BodyFault::Apart { count: 2, .. })));
+    assert_eq!(rigid_body(mesh(), true).unwrap(), mesh());
+    // Also one that lies in another's hollow.
+    let caged = boxes(&[(at(0.0), 0.03, true), (at(0.0), 0.02, false), (at(0.0), 0.01, true)]);
+    assert!(matches!(rigid_body(caged, false), Err(BodyFault::Apart { count: 2, .. })));
+}
+
+#[test]
+fn a_surface_through_itself_is_named_with_the_place() {
+    let ball = primitive_mesh(&Primitive::Sphere { radius: 0.02 }, 320).unwrap();
+    let mut vertices = ball.vertices().to_vec();
+    let top = (0..vertices.len()).max_by(|&a, &b| vertices[a].z.total_cmp(&vertices[b].z)).unwrap();
+    vertices[top].z = -0.03;
+    let fault = rigid_body(Mesh::new(vertices, ball.facets().to_vec()).unwrap(), false).unwrap_err();
+    assert!(matches!(fault, BodyFault::Crossing { .. }), "{fault}");
+    assert!(rigid_body(ball, false).is_ok());
+}

@@ -1,0 +1,60 @@
+//! Bodies that overlap, united: what they share counts once.
+
+use super::Part;
+use boolmesh::prelude::{Manifold, OpType, compute_boolean};
+use regrasp_api::{Mesh, Vec3};
+use std::panic::catch_unwind;
+
+/// More bodies than this are not united one after the other.
+const MANY: usize = 64;
+
+/// The union of bodies whose facets all look outward; `None` where it cannot be made.
+///
+/// M. Smith, "Towards robust inexact geometric computation", PhD thesis, Cambridge 2009, as in the library
+/// Manifold.
+pub(super) fn united(mesh: &Mesh, parts: &[Part]) -> Option<Mesh> {
+    if parts.len() > MANY || parts.iter().any(|part| part.volume <= 0.0) {
+        return None;
+    }
+    // The library may panic on input that is worse than it looks; such bodies are then refused.
+    catch_unwind(|| {
+        let mut rest = parts.iter().map(|part| manifold(mesh, part));
+        let first = rest.next()??;
+        let all = rest.try_fold(first, |all, next| compute_boolean(&all, &next?, OpType::Add).ok())?;
+        ordered(&all)
+    })
+    .ok()
+    .flatten()
+}
+
+fn manifold(mesh: &Mesh, part: &Part) -> Option<Manifold> {
+    let corners = part.facets.iter().flat_map(|&facet| mesh.facets()[facet as usize]);
+    let mut used: Vec<u32> = corners.clone().collect();
+    used.sort_unstable();
+    used.dedup();
+    let points: Vec<f64> = used.iter().flat_map(|&v| <[f64; 3]>::from(mesh.vertices()[v as usize])).collect();
+    let indices: Vec<usize> = corners.map(|v| used.binary_search(&v).unwrap_or(0)).collect();
+    Manifold::new(&points, &indices).ok()
+}
+
+/// The result as a mesh, vertices and facets in an order of their own: whatever order the library made them
+/// in.
+fn ordered(all: &Manifold) -> Option<Mesh> {
+    let points: Vec<Vec3> = all.ps.iter().map(|p| Vec3::new(p.x, p.y, p.z)).collect();
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    let by_place = |a: &usize, b: &usize| {
+        let pairs = points[*a].iter().zip(points[*b].iter());
+        pairs.map(|(x, y)| x.total_cmp(y)).find(|order| order.is_ne()).unwrap_or(a.cmp(b))
+    };
+    order.sort_by(by_place);
+    let mut place = vec![0; order.len()];
+    order.iter().enumerate().for_each(|(new, &old)| place[old] = new as u32);
+    let turned = |corners: [u32; 3]| {
+        let first = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
+        [corners[first], corners[(first + 1) % 3], corners[(first + 2) % 3]]
+    };
+    let tails: Vec<u32> = all.hs.iter().map(|half| place[half.tail]).collect();
+    let mut facets: Vec<[u32; 3]> = tails.chunks_exact(3).map(|t| turned([t[0], t[1], t[2]])).collect();
+    facets.sort_unstable();
+    Mesh::new(order.iter().map(|&old| points[old]).collect(), facets).ok()
+}
