@@ -131,12 +131,12 @@ pub struct HandChoice {
     pub mesh_pieces: Option<usize>,
     /// What all lengths of the file are multiplied with (no unit): 0.001 for a file in millimetres.
     #[serde(default)]
-    #[schemars(range(min = 1e-6, max = 1e6))]
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "1"))]
     #[schemars(example = 0.001)]
     pub scale: Option<f64>,
     /// What the coordinates of all its meshes are multiplied with (no unit).
     #[serde(default)]
-    #[schemars(range(min = 1e-6, max = 1e6))]
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "1"))]
     #[schemars(example = 0.001)]
     pub mesh_scale: Option<f64>,
     /// Largest acceleration of every joint (rad/s²); where absent, what the URDF says, or else 20.
@@ -156,6 +156,7 @@ pub struct HandChoice {
     pub effort: Option<f64>,
     /// Range (rad) of joints for which the file says none, or one of no width: lowest and highest position.
     #[serde(default)]
+    #[schemars(inner(range(min = -12.57, max = 12.57)), extend("x-unit" = "rad"))]
     #[schemars(extend("examples" = [[-0.3, 1.6]]))]
     pub limits: Option<[f64; 2]>,
     /// What holds for joints by name, whatever the file says.
@@ -172,32 +173,32 @@ pub struct JointTable {
     pub name: String,
     /// Lowest position (rad; m where prismatic), together with `upper`.
     #[serde(default)]
-    #[schemars(range(min = -12.57, max = 12.57))]
+    #[schemars(range(min = -12.57, max = 12.57), extend("x-unit" = "rad"))]
     #[schemars(example = -0.3)]
     pub lower: Option<f64>,
     /// Highest position (rad; m where prismatic), together with `lower`.
     #[serde(default)]
-    #[schemars(range(min = -12.57, max = 12.57))]
+    #[schemars(range(min = -12.57, max = 12.57), extend("x-unit" = "rad"))]
     #[schemars(example = 1.6)]
     pub upper: Option<f64>,
     /// Largest velocity (rad/s; m/s where prismatic).
     #[serde(default)]
-    #[schemars(range(min = 1e-3, max = 1e9))]
+    #[schemars(range(min = 1e-3, max = 1e9), extend("x-unit" = "rad/s"))]
     #[schemars(example = 3.0)]
     pub velocity: Option<f64>,
     /// Largest effort (N·m; N where prismatic).
     #[serde(default)]
-    #[schemars(range(min = 1e-6, max = 1e9))]
+    #[schemars(range(min = 1e-6, max = 1e9), extend("x-unit" = "N·m"))]
     #[schemars(example = 0.7)]
     pub effort: Option<f64>,
     /// Largest acceleration (rad/s²; m/s² where prismatic).
     #[serde(default)]
-    #[schemars(range(min = 1e-3, max = 1e9))]
+    #[schemars(range(min = 1e-3, max = 1e9), extend("x-unit" = "rad/s²"))]
     #[schemars(example = 20.0)]
     pub acceleration: Option<f64>,
     /// Where the joint stands (rad; m where prismatic) if no finger has it.
     #[serde(default)]
-    #[schemars(range(min = -12.57, max = 12.57))]
+    #[schemars(range(min = -12.57, max = 12.57), extend("x-unit" = "rad"))]
     #[schemars(example = 0.0)]
     pub position: Option<f64>,
 }
