@@ -64,7 +64,9 @@ pub(super) fn no_slip(subject: &Subject<'_>) -> Finding {
 
 pub(super) fn others_rest(subject: &Subject<'_>) -> Finding {
     on_journeys::<Regrasp>(subject, |journey| {
-        let (from, Goal::Regrasp { finger, .. }) = (&journey.case.from, &journey.case.goal) else { continue };
+        let (from, Goal::Regrasp { finger, .. }) = (&journey.case.from, &journey.case.goal) else {
+            return Ok(());
+        };
         for (i, q) in journey.path.states.iter().enumerate() {
             let mut rest = q.clone();
             rest.joints[*finger] = from.joints[*finger];
@@ -80,7 +82,7 @@ const LIFTED: f64 = 1e-3;
 
 pub(super) fn touches_at_ends(subject: &Subject<'_>) -> Finding {
     on_journeys::<Regrasp>(subject, |journey| {
-        let Goal::Regrasp { finger, .. } = &journey.case.goal else { continue };
+        let Goal::Regrasp { finger, .. } = &journey.case.goal else { return Ok(()) };
         let states = &journey.path.states;
         let last = states.len().saturating_sub(1) as f64;
         if states.len() < 2 {
