@@ -60,7 +60,8 @@ fn a_preset_in_the_file_is_the_same_and_the_command_line_overrides_it() {
 
 #[test]
 fn the_starts_own_contacts_are_tried_at_the_goal() {
-    // With so little friction no three of the four fingers hold the cube: no grasp that can be left is found, and none is needed.
+    // With so little friction no three of the four fingers hold the cube: no grasp that can be left is found,
+    // and none is needed.
     let given = "friction = 0.05\n";
     let grasp = "grasp = [{ contact = [0.0225, 0.0, 0.0] }, { contact = [0.0, 0.0225, 0.0] }, \
                  { contact = [-0.0225, 0.0, 0.0] }, { contact = [0.0, -0.0225, 0.0] }]\n";

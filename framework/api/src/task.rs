@@ -8,11 +8,12 @@ use crate::{
 
 /// The planner's predicate for nodes: collision-free, stable, and easy to leave by transfers and regrasps.
 ///
-/// A heuristic that makes the reduction property work in practice: nodes must pass it; a given start or goal that fails it is
-/// warned about, not refused.
+/// A heuristic that makes the reduction property work in practice: nodes must pass it; a given start or goal
+/// that fails it is warned about, not refused.
 pub trait Admissible: Send + Sync {
-    /// One finger that a sampler has just placed: contact away from sharp edges, finger free of palm, obstacles, object
-    /// and the fingers in `placed`, able to retreat. A finger without contact must be free of all of them. `None` if it may stay.
+    /// One finger that a sampler has just placed: contact away from sharp edges, finger free of palm,
+    /// obstacles, object and the fingers in `placed`, able to retreat. A finger without contact must be free
+    /// of all of them. `None` if it may stay.
     fn admit_finger(
         &self,
         task: &Task<'_>,
@@ -22,7 +23,8 @@ pub trait Admissible: Send + Sync {
         context: &mut Context<'_>,
     ) -> Result<Option<Reason>, CallError>;
 
-    /// The grasp as a whole, its fingers having passed [`Admissible::admit_finger`]: stable, and enough of its fingers liftable.
+    /// The grasp as a whole, its fingers having passed [`Admissible::admit_finger`]: stable, and enough of
+    /// its fingers liftable.
     fn admit_grasp(
         &self,
         task: &Task<'_>,
@@ -77,7 +79,8 @@ pub struct Task<'a> {
     pub resolution: &'a Resolution,
     /// Lowest and highest coordinates of the object's origin in H (m) for samples.
     pub workspace: (Vec3, Vec3),
-    /// The object's poses at the start and the goals of the search, in turn; samplers may draw near the motion between them.
+    /// The object's poses at the start and the goals of the search, in turn; samplers may draw near the
+    /// motion between them.
     pub landmarks: &'a [Pose],
 }
 
@@ -89,8 +92,9 @@ impl<'a> Task<'a> {
 
     /// The grasp of the fingers in `holding` (those of them that touch) at `q`, with the planning friction.
     ///
-    /// For what rests: regrasps, start and goals. While the object moves it is [`Task::transfer_grasp`]. The joints of `q` must be those that
-    /// hold: where the stability test asks for them, the grasp carries what they can exert.
+    /// For what rests: regrasps, start and goals. While the object moves it is [`Task::transfer_grasp`]. The
+    /// joints of `q` must be those that hold: where the stability test asks for them, the grasp carries what
+    /// they can exert.
     pub fn grasp(&self, q: &Configuration, holding: FingerSet) -> Grasp<'a> {
         let mu = self.planning_friction();
         self.grasp_with(q, holding, |finger, contact| self.contact_model.cone(finger, contact, mu))

@@ -42,8 +42,8 @@ const fn line(slot: Slot, change: PresetChange, source: &'static str) -> PresetL
 
 /// Every preset.
 ///
-/// Line and section numbers are those of A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation
-/// planning", SSD 2007.
+/// Line and section numbers are those of A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for
+/// dexterous manipulation planning", SSD 2007.
 pub const PRESETS: &[Preset] = &[
     Preset {
         name: "default",
@@ -112,7 +112,8 @@ pub fn preset(name: &str) -> Result<&'static Preset, HostError> {
 }
 
 impl Preset {
-    /// Sets what the preset sets, over whatever is chosen; first what the other presets set goes back to the defaults.
+    /// Sets what the preset sets, over whatever is chosen; first what the other presets set goes back to the
+    /// defaults.
     pub fn apply(&self, choices: &mut Choices) {
         let defaults = Choices::default();
         for line in PRESETS.iter().flat_map(|preset| preset.lines) {

@@ -11,7 +11,8 @@ pub type PluginNotes = BTreeMap<String, Figure>;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Statistics {
-    /// Nodes that the search generated: samples that gave a grasp, kept or not; start and goals are not among them.
+    /// Nodes that the search generated: samples that gave a grasp, kept or not; start and goals are not among
+    /// them.
     pub generated_nodes: usize,
     /// Nodes of the final manipulation graph: those that were kept, and the grasps at start and goals.
     pub graph_nodes: usize,
@@ -49,7 +50,8 @@ pub struct RoadmapStatistics {
     pub decompositions: usize,
     /// Those of them that could not be.
     pub failed_decompositions: usize,
-    /// How often a search was begun anew; generated nodes are those of all rounds, the graph that of the last.
+    /// How often a search was begun anew; generated nodes are those of all rounds, the graph that of the
+    /// last.
     pub restarts: usize,
 }
 

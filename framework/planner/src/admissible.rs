@@ -7,9 +7,9 @@ use regrasp_api::{
 
 /// Admits configurations that can be left by transfers and regrasps.
 ///
-/// The reduction property (Alami, Laumond, Siméon, "Two manipulation planning algorithms", WAFR 1994) needs more than a
-/// stable grasp: of its n fingers at least n - 1 can be lifted with the rest stable, and every finger can retreat
-/// from the object. Otherwise a node is a dead end.
+/// The reduction property (Alami, Laumond, Siméon, "Two manipulation planning algorithms", WAFR 1994) needs
+/// more than a stable grasp: of its n fingers at least n - 1 can be lifted with the rest stable, and every
+/// finger can retreat from the object. Otherwise a node is a dead end.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Leavable;
 
@@ -73,9 +73,10 @@ impl Admissible for Leavable {
 
 /// Admits configurations in which a motion may begin or end.
 ///
-/// The reduction property asks for nodes that can be left in several ways; an end is left in one. So n - 1 fingers are enough, or n of which one can
-/// be lifted: the rest of the hand comes to the object, or goes from it, by regrasps. What is lost is that the end lies in GS_n: paths in GS_n cannot
-/// begin there, and the search joins it by transfers and regrasps alone.
+/// The reduction property asks for nodes that can be left in several ways; an end is left in one. So n - 1
+/// fingers are enough, or n of which one can be lifted: the rest of the hand comes to the object, or goes
+/// from it, by regrasps. What is lost is that the end lies in GS_n: paths in GS_n cannot begin there, and the
+/// search joins it by transfers and regrasps alone.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Holdable;
 

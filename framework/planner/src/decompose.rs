@@ -1,8 +1,9 @@
 //! Decomposition of a path in GS_n, along which contacts slide, into transfers and regrasps.
 //!
-//! Greedy: roll along the path as far as it goes, regrasp to the path's contacts there, go on; where the regrasps fail, back
-//! off and try again. By halving: roll from one end of a piece to the pose of the other and regrasp there; where that fails, halve the
-//! piece. Nothing guarantees success: the caller deletes the edge then. Greedy needs fewer regrasps than halving at the same success rate.
+//! Greedy: roll along the path as far as it goes, regrasp to the path's contacts there, go on; where the
+//! regrasps fail, back off and try again. By halving: roll from one end of a piece to the pose of the other
+//! and regrasp there; where that fails, halve the piece. Nothing guarantees success: the caller deletes the
+//! edge then. Greedy needs fewer regrasps than halving at the same success rate.
 
 use crate::order::regrasp_all;
 use crate::segments::{end, farthest};

@@ -61,7 +61,8 @@ impl Draft {
         state.expect("a segment has at least two states, and a smoothed motion one segment")
     }
 
-    /// Whether any grasp will do at this boundary: the motion ends there, at a goal without a grasp of its own.
+    /// Whether any grasp will do at this boundary: the motion ends there, at a goal without a grasp of its
+    /// own.
     pub fn is_free_end(&self, boundary: usize) -> bool {
         boundary == self.segments.len()
             && self.marks.last().is_some_and(|mark| mark.boundary == boundary && !mark.grasp_given)
@@ -76,8 +77,8 @@ impl Draft {
         })
     }
 
-    /// Gives every orientation that of its two quaternions which is nearer to the one before: q and -q turn the object alike, but a plan
-    /// holds numbers, and segments share theirs exactly.
+    /// Gives every orientation that of its two quaternions which is nearer to the one before: q and -q turn
+    /// the object alike, but a plan holds numbers, and segments share theirs exactly.
     pub fn align_quaternions(&mut self) {
         let mut states = self.segments.iter_mut().flat_map(|segment| &mut segment.states);
         let Some(mut before) = states.next().map(|q| q.X_HO.rotation) else { return };
@@ -90,7 +91,8 @@ impl Draft {
         }
     }
 
-    /// Replaces the segments of `old`, which end with a station, by those of others between the same poses that move; the goals move with them.
+    /// Replaces the segments of `old`, which end with a station, by those of others between the same poses
+    /// that move; the goals move with them.
     pub fn replace(&mut self, old: std::ops::Range<usize>, mut segments: Vec<Segment>) {
         segments.retain(moves);
         let (start, end) = (old.start, old.end);

@@ -93,7 +93,8 @@ fn on_surface(task: &Task<'_>, p_OC: regrasp_api::Vec3) -> Result<Contact, Strin
         let far = projection.distance * 1e3;
         return Err(format!("has a `contact` {far:.2} mm off the object's surface; at most 1 mm is allowed"));
     }
-    // From a little outside, the closest point has the facet's own normal, whichever side the given point lay on.
+    // From a little outside, the closest point has the facet's own normal, whichever side the given point lay
+    // on.
     let lifted = projection.contact.p_OC + projection.contact.n_O * task.hand.fingertip_radius();
     Ok(task.surface.project(&lifted, Some(projection.contact.facet)).contact)
 }
@@ -106,7 +107,8 @@ fn stable(work: &mut Work<'_>, q: &Configuration) -> Result<bool, CallError> {
         && task.stability.test(&grasp, &mut Default::default(), &mut work.context)?.is_stable())
 }
 
-/// The contacts of `from` at another pose of the object, if its fingers reach them there, nothing is in the way and the grasp is stable.
+/// The contacts of `from` at another pose of the object, if its fingers reach them there, nothing is in the
+/// way and the grasp is stable.
 ///
 /// Nobody asks whether its fingers can be lifted: an end need not be left by regrasps.
 pub(crate) fn same_grasp(
@@ -131,7 +133,8 @@ pub(crate) fn sort_by_ease<'p>(
     found: &mut [Configuration],
     others: impl Iterator<Item = &'p Pose> + Clone,
 ) {
-    // Fractions with a small power of two below: their sums are exact, and ties keep the order in which the grasps were found.
+    // Fractions with a small power of two below: their sums are exact, and ties keep the order in which the
+    // grasps were found.
     let ease = |q: &Configuration| others.clone().map(|X_HO| outlook(task, q, X_HO).fraction).sum::<f64>();
     found.sort_by_cached_key(|q| std::cmp::Reverse(Length(ease(q))));
 }

@@ -14,7 +14,8 @@ fn neighbours(poses: &[Pose], place: usize) -> impl Iterator<Item = &Pose> + Clo
 }
 
 impl Run<'_> {
-    /// Start and goals of a leg, and what finds more goals; the start is `at` where an earlier leg ended there.
+    /// Start and goals of a leg, and what finds more goals; the start is `at` where an earlier leg ended
+    /// there.
     pub fn ends_of(
         &mut self,
         leg: usize,
@@ -41,7 +42,8 @@ impl Run<'_> {
         Ok((start, goals, finder))
     }
 
-    /// The contacts of the leg's start at its goal, if the object can be held there by them: the shortest of all plans may be one roll.
+    /// The contacts of the leg's start at its goal, if the object can be held there by them: the shortest of
+    /// all plans may be one roll.
     fn same_grasp(&mut self, start: NodeId, leg: usize) -> Result<Option<NodeId>, Halt> {
         let X_HO = self.poses[leg + 1];
         let from = self.graph.node(start);
@@ -52,7 +54,8 @@ impl Run<'_> {
         Ok(found.result?.map(|q| self.graph.add_node(q, Origin::Goal)))
     }
 
-    /// The nodes of one end of the problem, those that seem easiest to leave first, and what finds more of them; one for the start.
+    /// The nodes of one end of the problem, those that seem easiest to leave first, and what finds more of
+    /// them; one for the start.
     fn end(
         &mut self,
         end: End,
@@ -83,8 +86,8 @@ impl Run<'_> {
         Ok((nodes, Some(finder)))
     }
 
-    /// Grasps in which a motion may begin or end, of n - 1 fingers too: where none was found that could be a node anywhere. Where there is none
-    /// yet, one is looked for as long as the budget of samples lasts.
+    /// Grasps in which a motion may begin or end, of n - 1 fingers too: where none was found that could be a
+    /// node anywhere. Where there is none yet, one is looked for as long as the budget of samples lasts.
     fn weaker_grasps(&mut self, finder: &mut Finder, count: usize) -> Result<Vec<Configuration>, CallError> {
         let most = self.request.problem.limits.budget.max_nodes as u64;
         let (mut found, mut tries) = (Vec::new(), 0);

@@ -1,7 +1,8 @@
 //! Checks before a roll: they cost a hundredth of it, and predict most of its failures.
 //!
-//! Heuristics: the contacts are taken to stay where they are, while in truth they drift as the fingertips roll, mostly to the
-//! fingers' advantage. They decide what is tried first and what is not tried at all, never what is valid.
+//! Heuristics: the contacts are taken to stay where they are, while in truth they drift as the fingertips
+//! roll, mostly to the fingers' advantage. They decide what is tried first and what is not tried at all,
+//! never what is valid.
 
 use regrasp_api::{Configuration, FingerSet, Pose, Reason, Task, interpolate};
 
@@ -10,8 +11,8 @@ const PARTS: u32 = 8;
 
 /// How far along a roll one must be able to look for it to be tried as a whole.
 ///
-/// Of the rolls that were barred half-way, smoothing the paper's problems, one in fifty went all the way; of those barred a part farther on,
-/// one in eight.
+/// Of the rolls that were barred half-way, smoothing the paper's problems, one in fifty went all the way; of
+/// those barred a part farther on, one in eight.
 const HALF_WAY: f64 = 0.62;
 
 /// How far the fingers seem able to follow their contacts along the straight motion to a pose.

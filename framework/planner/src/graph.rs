@@ -182,8 +182,8 @@ impl Graph {
         self.component[node.0 as usize]
     }
 
-    /// Distance of two nodes (m): the object's displacement, its turn times the object's radius, and how far the contacts lie
-    /// apart on the object, averaged over the fingers.
+    /// Distance of two nodes (m): the object's displacement, its turn times the object's radius, and how far
+    /// the contacts lie apart on the object, averaged over the fingers.
     pub fn distance(&self, a: NodeId, b: NodeId) -> f64 {
         configuration_distance(self.node(a), self.node(b), self.turn_length)
     }

@@ -5,7 +5,8 @@ use crate::session::Work;
 use regrasp_api::{CallError, Configuration, FingerIndex, FingerSet, MAX_FINGERS, Path, Target};
 use regrasp_plan::{Segment, SegmentKind};
 
-/// Moves the fingers one after the other from `from` to the contacts of `to`, the object resting; `None` if no order works.
+/// Moves the fingers one after the other from `from` to the contacts of `to`, the object resting; `None` if
+/// no order works.
 pub(crate) fn regrasp_all(
     work: &mut Work<'_>,
     from: &Configuration,
@@ -30,15 +31,16 @@ fn regrasp(
 
 /// Depth-first search over the orders of the fingers.
 ///
-/// What is left to move decides everything that comes, so sets of fingers are remembered: those from which no order
-/// keeps the grasp stable and the fingers out of each other's places, found out first because it costs a hundredth of a finger's path, and
-/// those from which the paths failed.
+/// What is left to move decides everything that comes, so sets of fingers are remembered: those from which no
+/// order keeps the grasp stable and the fingers out of each other's places, found out first because it costs
+/// a hundredth of a finger's path, and those from which the paths failed.
 struct Order<'a> {
     from: &'a Configuration,
     to: &'a Configuration,
     /// Whether some order of the fingers in the set keeps the grasp stable, where it is known.
     hopeful: [Option<bool>; 256],
-    /// For each finger those that it would touch where it goes, as long as they are where they were; where it is known.
+    /// For each finger those that it would touch where it goes, as long as they are where they were; where it
+    /// is known.
     barring: [Option<FingerSet>; MAX_FINGERS],
     dead: [bool; 256],
     steps: Vec<Segment>,
@@ -87,7 +89,8 @@ impl<'a> Order<'a> {
         Ok(false)
     }
 
-    /// Whether `finger` of the fingers `left` may be lifted and set down, and some order of the rest be kept stable.
+    /// Whether `finger` of the fingers `left` may be lifted and set down, and some order of the rest be kept
+    /// stable.
     fn is_hopeful(
         &mut self,
         work: &mut Work<'_>,
@@ -131,7 +134,8 @@ impl<'a> Order<'a> {
         Ok(hopeful)
     }
 
-    /// Whether the other fingers hold the object while `finger` moves, those `left` where they were and the rest where they go.
+    /// Whether the other fingers hold the object while `finger` moves, those `left` where they were and the
+    /// rest where they go.
     fn may_lift(&self, work: &mut Work<'_>, left: FingerSet, finger: FingerIndex) -> Result<bool, CallError> {
         let mut q = self.from.clone();
         for other in q.contacts.fingers().filter(|&other| !left.contains(other)) {

@@ -11,7 +11,8 @@ use regrasp_plan::Segment;
 type Decomposed = Counted<Result<Option<Vec<Segment>>, CallError>>;
 
 impl Search<'_> {
-    /// Searches a path and decomposes its edges; the first that fails leaves the graph, and the search goes on.
+    /// Searches a path and decomposes its edges; the first that fails leaves the graph, and the search goes
+    /// on.
     pub fn query(&mut self) -> Result<Option<Vec<Segment>>, CallError> {
         let path = shortest_path(self.state.graph, self.leg.start, &self.state.goals);
         let Some(path) = path else { return Ok(None) };

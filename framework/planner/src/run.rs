@@ -63,8 +63,9 @@ impl Run<'_> {
 
     /// One leg, from the node `at` or, for the first, from the start: the node in which it ends.
     ///
-    /// Where a search grows long without a plan it is begun anew in streams of its own, with other grasps at its ends: what was drawn
-    /// first may be a dead end, and nobody knows. All rounds together spend the leg's budget.
+    /// Where a search grows long without a plan it is begun anew in streams of its own, with other grasps at
+    /// its ends: what was drawn first may be a dead end, and nobody knows. All rounds together spend the
+    /// leg's budget.
     fn leg(&mut self, leg: usize, at: Option<NodeId>) -> Result<NodeId, Halt> {
         let mut budget = Budget { most: self.request.problem.limits.budget.max_nodes, ..Default::default() };
         let ended = self.rounds(leg, at, &mut budget);

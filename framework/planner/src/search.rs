@@ -1,7 +1,9 @@
-//! Algorithm 1: explores GS_n and connects its components until start and goal are joined by an executable path.
+//! Algorithm 1: explores GS_n and connects its components until start and goal are joined by an executable
+//! path.
 //!
-//! A search is what is searched ([`Leg`]), how far it is ([`State`]), and what it may spend ([`Budget`]). Its other parts stand in files
-//! of their own: Algorithm 2 in `explore`, Algorithm 3 in `connect`, the query in `query`.
+//! A search is what is searched ([`Leg`]), how far it is ([`State`]), and what it may spend ([`Budget`]). Its
+//! other parts stand in files of their own: Algorithm 2 in `explore`, Algorithm 3 in `connect`, the query in
+//! `query`.
 
 use crate::endpoints::Finder;
 use crate::graph::Graph;
@@ -58,8 +60,8 @@ pub(crate) struct Budget {
     pub most: usize,
     /// Samples asked for, whether they gave a node or not.
     pub samples: usize,
-    /// Those of them that were drawn anywhere; counted apart, for what is drawn ahead must not change its number when nodes are extended
-    /// in between.
+    /// Those of them that were drawn anywhere; counted apart, for what is drawn ahead must not change its
+    /// number when nodes are extended in between.
     pub anywhere: usize,
     /// Nodes that samples gave, kept or not.
     pub generated: usize,
@@ -76,9 +78,10 @@ pub(crate) struct Budget {
 }
 
 impl Budget {
-    /// Begins the next round: its length in units of `unit` samples follows the sequence 1, 1, 2, 1, 1, 2, 4, … of M. Luby, A. Sinclair,
-    /// D. Zuckerman, "Optimal speedup of Las Vegas algorithms", IPL 1993: whatever the distribution of a search's length, no schedule
-    /// is better by more than a logarithm. `unit` = 0 means one round without an end.
+    /// Begins the next round: its length in units of `unit` samples follows the sequence 1, 1, 2, 1, 1, 2, 4,
+    /// … of M. Luby, A. Sinclair, D. Zuckerman, "Optimal speedup of Las Vegas algorithms", IPL 1993: whatever
+    /// the distribution of a search's length, no schedule is better by more than a logarithm. `unit` = 0
+    /// means one round without an end.
     pub fn begin_round(&mut self, unit: usize) {
         self.rounds += 1;
         self.round_end = (unit > 0).then(|| self.samples + unit * luby(self.rounds) as usize);
@@ -118,7 +121,8 @@ pub(crate) enum Ended {
 pub(crate) type Sample = Counted<Result<Option<Configuration>, CallError>>;
 
 impl Search<'_> {
-    /// Runs until a path is found and decomposed, the strategy or the budget ends the search, or the round is over.
+    /// Runs until a path is found and decomposed, the strategy or the budget ends the search, or the round is
+    /// over.
     pub fn run(&mut self) -> Result<Ended, CallError> {
         for step in 0.. {
             if self.budget.round_is_over() {

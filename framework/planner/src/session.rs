@@ -96,7 +96,8 @@ impl<'a> Session<'a> {
 
     /// Makes the call with this key, and returns its result with what it counted.
     ///
-    /// A plugin that panicked where it could not return an error makes the result worthless: then it is that panic.
+    /// A plugin that panicked where it could not return an error makes the result worthless: then it is that
+    /// panic.
     pub fn counted<T>(
         &self,
         task: &Task<'_>,
@@ -115,7 +116,8 @@ impl<'a> Session<'a> {
 
     /// The results of `call(0), call(1), …` in order, computed ahead by the threads there are.
     ///
-    /// The caller may stop anywhere: with one thread nothing beyond that was computed, with several it is thrown away.
+    /// The caller may stop anywhere: with one thread nothing beyond that was computed, with several it is
+    /// thrown away.
     pub fn ahead<'s, T: Send + 's>(
         &'s self,
         count: usize,

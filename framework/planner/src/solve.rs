@@ -81,8 +81,8 @@ fn poses(problem: &Problem) -> Result<Vec<Pose>, PlanError> {
     Ok(poses)
 }
 
-/// The sets of fingers that may hold the object, with `spare` more than the fewest that can be stable: 1 gives GS_n; larger ones where `more`
-/// says so.
+/// The sets of fingers that may hold the object, with `spare` more than the fewest that can be stable: 1
+/// gives GS_n; larger ones where `more` says so.
 fn finger_choices(task: &Task<'_>, spare: usize, more: bool) -> Result<Vec<FingerSet>, PlanError> {
     let (fingers, fewest) = (task.hand.finger_count(), task.contact_model.fewest_contacts());
     if fingers < fewest + spare.max(1) {

@@ -8,7 +8,8 @@ use regrasp_plan::{Segment, SegmentKind};
 
 /// Rolls the object towards a pose.
 ///
-/// The segment has one state where it did not move: a motion leaves such rests out ([`crate::segments::moves`]).
+/// The segment has one state where it did not move: a motion leaves such rests out
+/// ([`crate::segments::moves`]).
 pub(crate) fn transfer(
     work: &mut Work<'_>,
     from: &Configuration,
@@ -42,7 +43,8 @@ pub(crate) fn transfer_then_regrasp(
     Ok(Some(steps))
 }
 
-/// A roll cut short, or rolled on, so that it ends exactly at a pose on its way; `None` if it cannot be rolled that far.
+/// A roll cut short, or rolled on, so that it ends exactly at a pose on its way; `None` if it cannot be
+/// rolled that far.
 ///
 /// What is rolled on stays with `rolled`.
 pub(crate) fn rolled_to(

@@ -1,18 +1,20 @@
 //! `graph-strategy/bidirectional`: two trees that grow towards each other.
 //!
-//! The component of the start and those of the goals are two trees. They grow in turn: a node of the tree is extended by a sample
-//! near it, with probability `greed` the node nearest to a random node of the other tree, otherwise a random one. The new node is
-//! then tried with the nearest node of each tree that it does not belong to, first inside GS_n, then by transfer and regrasps; a new
-//! node that no path in GS_n joins to the tree it grew from may so enter the trees all the same. With probability `anywhere` a
-//! sample is drawn anywhere instead: growing near old nodes alone would never leave a component of GS_n that the trees fill.
+//! The component of the start and those of the goals are two trees. They grow in turn: a node of the tree is
+//! extended by a sample near it, with probability `greed` the node nearest to a random node of the other
+//! tree, otherwise a random one. The new node is then tried with the nearest node of each tree that it does
+//! not belong to, first inside GS_n, then by transfer and regrasps; a new node that no path in GS_n joins to
+//! the tree it grew from may so enter the trees all the same. With probability `anywhere` a sample is drawn
+//! anywhere instead: growing near old nodes alone would never leave a component of GS_n that the trees fill.
 //!
-//! It pays where the motion from start to goal is a narrow passage that samples anywhere miss; in an open workspace its short
-//! extensions make more nodes than samples anywhere do.
+//! It pays where the motion from start to goal is a narrow passage that samples anywhere miss; in an open
+//! workspace its short extensions make more nodes than samples anywhere do.
 //!
-//! Source: J. Kuffner, S. LaValle, "RRT-Connect: an efficient approach to single-query path planning", ICRA 2000;
-//! S. LaValle, "Planning Algorithms", 2006, section 5.5.3. Departures: trees grow in turn by the count of samples, not the
-//! smaller one first, since a tree whose extensions fail to join it would stay the smaller one for ever; a strategy sees distances between nodes only, so that
-//! the other tree's nodes take the place of random configurations, and the manifold's samples near a node that of steps towards them.
+//! Source: J. Kuffner, S. LaValle, "RRT-Connect: an efficient approach to single-query path planning", ICRA
+//! 2000; S. LaValle, "Planning Algorithms", 2006, section 5.5.3. Departures: trees grow in turn by the count
+//! of samples, not the smaller one first, since a tree whose extensions fail to join it would stay the
+//! smaller one for ever; a strategy sees distances between nodes only, so that the other tree's nodes take
+//! the place of random configurations, and the manifold's samples near a node that of steps towards them.
 
 use crate::nearest::{ends, nearest_in, nodes};
 use regrasp_api::{
@@ -141,11 +143,14 @@ inventory::submit! {
         slots: &[Slot::GraphStrategy],
         summary: "grows a tree from the start and one from the goals, and tries to join them",
         references: &[
-            "J. Kuffner, S. LaValle, RRT-Connect: an efficient approach to single-query path planning, ICRA 2000",
+            "J. Kuffner, S. LaValle, RRT-Connect: an efficient approach to single-query path planning, \
+             ICRA 2000",
             "S. LaValle, Planning Algorithms, Cambridge University Press 2006, section 5.5.3",
         ],
         schema: BidirectionalSettings::schema,
         check: check_settings::<BidirectionalSettings>,
-        build: Build::GraphStrategy(|json, _| Ok(Box::new(Bidirectional::new(BidirectionalSettings::from_json(json)?)?))),
+        build: Build::GraphStrategy(|json, _| {
+            Ok(Box::new(Bidirectional::new(BidirectionalSettings::from_json(json)?)?))
+        }),
     }
 }

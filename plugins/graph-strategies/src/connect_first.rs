@@ -1,17 +1,18 @@
 //! `graph-strategy/connect-first`: as few nodes as possible.
 //!
-//! Whenever two components hold near nodes that were not tried with each other, they are tried: start and goals by a path in GS_n, all
-//! others by transfer and regrasps (Algorithm 3), the newest node and the ends first. A new node is sampled only when no such pair
-//! is left. `neighbours` bounds how many nodes of other components each node is tried with, and so how much is spent on a graph
-//! before it grows.
+//! Whenever two components hold near nodes that were not tried with each other, they are tried: start and
+//! goals by a path in GS_n, all others by transfer and regrasps (Algorithm 3), the newest node and the ends
+//! first. A new node is sampled only when no such pair is left. `neighbours` bounds how many nodes of other
+//! components each node is tried with, and so how much is spent on a graph before it grows.
 //!
-//! It is the other end of the paper's α: P(α = 1) = 1 while there is something to connect. It pays where samples are dear (tight
-//! workspaces, slow samplers) or the problem is solved by few regrasps; elsewhere it spends its time on transfers between nodes
-//! that one more sample would have joined inside GS_n.
+//! It is the other end of the paper's α: P(α = 1) = 1 while there is something to connect. It pays where
+//! samples are dear (tight workspaces, slow samplers) or the problem is solved by few regrasps; elsewhere it
+//! spends its time on transfers between nodes that one more sample would have joined inside GS_n.
 //!
-//! Sources: Algorithms 2 and 3 of A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation
-//! planning", SSD 2007; trying all links of a small roadmap before it grows is in the manner of T. Siméon, J.-P. Laumond,
-//! C. Nissoux, "Visibility-based probabilistic roadmaps for motion planning", Advanced Robotics 2000, without its filter of nodes.
+//! Sources: Algorithms 2 and 3 of A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous
+//! manipulation planning", SSD 2007; trying all links of a small roadmap before it grows is in the manner of
+//! T. Siméon, J.-P. Laumond, C. Nissoux, "Visibility-based probabilistic roadmaps for motion planning",
+//! Advanced Robotics 2000, without its filter of nodes.
 
 use crate::nearest::{join_ends, untried_pair};
 use regrasp_api::{
@@ -81,11 +82,15 @@ inventory::submit! {
         slots: &[Slot::GraphStrategy],
         summary: "explores only when no near pair of nodes is left to connect",
         references: &[
-            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007, Algorithms 2 and 3",
-            "T. Siméon, J.-P. Laumond, C. Nissoux, Visibility-based probabilistic roadmaps for motion planning, Advanced Robotics 2000",
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation \
+             planning, SSD 2007, Algorithms 2 and 3",
+            "T. Siméon, J.-P. Laumond, C. Nissoux, Visibility-based probabilistic roadmaps for motion \
+             planning, Advanced Robotics 2000",
         ],
         schema: ConnectFirstSettings::schema,
         check: check_settings::<ConnectFirstSettings>,
-        build: Build::GraphStrategy(|json, _| Ok(Box::new(ConnectFirst::new(ConnectFirstSettings::from_json(json)?)?))),
+        build: Build::GraphStrategy(|json, _| {
+            Ok(Box::new(ConnectFirst::new(ConnectFirstSettings::from_json(json)?)?))
+        }),
     }
 }

@@ -1,17 +1,18 @@
 //! `graph-strategy/explore-first`: a roadmap first, its connection afterwards.
 //!
-//! While the graph is small only Algorithm 2 works: nodes of GS_n are sampled and joined by paths inside GS_n. Once the graph has
-//! `nodes` nodes, or the share `fraction` of the budget is generated, its components are connected by transfer and regrasps
-//! (Algorithm 3), near pairs first; where no pair is left that was not tried, one more node is explored. A query is asked as soon as
-//! start and goal are joined, in either phase.
+//! While the graph is small only Algorithm 2 works: nodes of GS_n are sampled and joined by paths inside
+//! GS_n. Once the graph has `nodes` nodes, or the share `fraction` of the budget is generated, its components
+//! are connected by transfer and regrasps (Algorithm 3), near pairs first; where no pair is left that was not
+//! tried, one more node is explored. A query is asked as soon as start and goal are joined, in either phase.
 //!
-//! It differs from the paper's Algorithm 1 by its sharp turn from exploring to connecting, in place of an α that rises slowly.
-//! It pays where exploring is cheap and attempts to connect are not: most of them become needless in a dense graph. It wastes
-//! time where GS_n falls into many components that no sample joins.
+//! It differs from the paper's Algorithm 1 by its sharp turn from exploring to connecting, in place of an α
+//! that rises slowly. It pays where exploring is cheap and attempts to connect are not: most of them become
+//! needless in a dense graph. It wastes time where GS_n falls into many components that no sample joins.
 //!
-//! Sources: the phases are those of the probabilistic roadmap, L. Kavraki, P. Švestka, J.-C. Latombe, M. Overmars, "Probabilistic
-//! roadmaps for path planning in high-dimensional configuration spaces", IEEE T-RA 1996 (construction, then expansion between
-//! components); Algorithms 2 and 3 are those of A. Sahbani, J.-P. Saut, V. Perdereau, SSD 2007.
+//! Sources: the phases are those of the probabilistic roadmap, L. Kavraki, P. Švestka, J.-C. Latombe, M.
+//! Overmars, "Probabilistic roadmaps for path planning in high-dimensional configuration spaces", IEEE T-RA
+//! 1996 (construction, then expansion between components); Algorithms 2 and 3 are those of A. Sahbani, J.-P.
+//! Saut, V. Perdereau, SSD 2007.
 
 use crate::nearest::{join_ends, untried_pair};
 use regrasp_api::{
@@ -38,7 +39,8 @@ pub struct ExploreFirstSettings {
 }
 
 impl Default for ExploreFirstSettings {
-    /// Our choices: a graph of the size that the paper's Table 1 ends with (23 to 65 nodes), and half of the budget.
+    /// Our choices: a graph of the size that the paper's Table 1 ends with (23 to 65 nodes), and half of the
+    /// budget.
     fn default() -> Self {
         Self { nodes: 25, fraction: 0.5, neighbours: 5, policy: SearchPolicy::default() }
     }
@@ -95,11 +97,15 @@ inventory::submit! {
         slots: &[Slot::GraphStrategy],
         summary: "explores GS_n up to a size of the graph, then connects its components",
         references: &[
-            "L. Kavraki, P. Švestka, J.-C. Latombe, M. Overmars, Probabilistic roadmaps for path planning in high-dimensional configuration spaces, IEEE T-RA 1996",
-            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007, Algorithms 2 and 3",
+            "L. Kavraki, P. Švestka, J.-C. Latombe, M. Overmars, Probabilistic roadmaps for path \
+             planning in high-dimensional configuration spaces, IEEE T-RA 1996",
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation \
+             planning, SSD 2007, Algorithms 2 and 3",
         ],
         schema: ExploreFirstSettings::schema,
         check: check_settings::<ExploreFirstSettings>,
-        build: Build::GraphStrategy(|json, _| Ok(Box::new(ExploreFirst::new(ExploreFirstSettings::from_json(json)?)?))),
+        build: Build::GraphStrategy(|json, _| {
+            Ok(Box::new(ExploreFirst::new(ExploreFirstSettings::from_json(json)?)?))
+        }),
     }
 }

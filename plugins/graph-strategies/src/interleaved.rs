@@ -1,14 +1,16 @@
 //! `graph-strategy/interleaved`: the paper's Algorithm 1 with a biased α.
 //!
-//! While start and goal lie in different components, draw α: 0 explores GS_n (Algorithm 2), 1 tries to connect a random node with
-//! another component by transfer and regrasps (Algorithm 3). The paper wants the probability of α = 1 low at first and rising as the
-//! graph grows, and leaves its law open; ours is `P(α = 1) = start + (end - start) · (1 - exp(-nodes / growth))`.
+//! While start and goal lie in different components, draw α: 0 explores GS_n (Algorithm 2), 1 tries to
+//! connect a random node with another component by transfer and regrasps (Algorithm 3). The paper wants the
+//! probability of α = 1 low at first and rising as the graph grows, and leaves its law open; ours is `P(α =
+//! 1) = start + (end - start) · (1 - exp(-nodes / growth))`.
 //!
-//! By default it departs from the paper where that was measured to be faster: before all else start and goals are tried to be joined
-//! (`first_try`, `join_ends`), every new node is kept (`drop_unconnected`), and one component is tried a draw (`all_components`).
+//! By default it departs from the paper where that was measured to be faster: before all else start and goals
+//! are tried to be joined (`first_try`, `join_ends`), every new node is kept (`drop_unconnected`), and one
+//! component is tried a draw (`all_components`).
 //!
-//! Source: A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD 2007,
-//! section IV.
+//! Source: A. Sahbani, J.-P. Saut, V. Perdereau, "An efficient algorithm for dexterous manipulation
+//! planning", SSD 2007, section IV.
 
 use crate::nearest::{self, nearest_of_each_component};
 use regrasp_api::{
@@ -30,25 +32,28 @@ pub struct InterleavedSettings {
     /// Number of nodes after which 63 % of the way from `start` to `end` is made (no unit).
     #[schemars(range(min = 0.1, max = 1e6), extend("x-unit" = "1"))]
     pub growth: f64,
-    /// Whether the start is tried to be joined to each goal by transfers and regrasps before anything else. The paper builds the graph
-    /// alone (Algorithm 1).
+    /// Whether the start is tried to be joined to each goal by transfers and regrasps before anything else.
+    /// The paper builds the graph alone (Algorithm 1).
     pub first_try: bool,
-    /// Whether paths in GS_n from start and goals to each component are tried at once; the paper tries those of new nodes alone
-    /// (Algorithm 2).
+    /// Whether paths in GS_n from start and goals to each component are tried at once; the paper tries those
+    /// of new nodes alone (Algorithm 2).
     pub join_ends: bool,
-    /// Whether new nodes are tried to be joined by paths in GS_n at all. Without, Algorithm 3 alone joins the graph: to see what GS_n is good for.
+    /// Whether new nodes are tried to be joined by paths in GS_n at all. Without, Algorithm 3 alone joins the
+    /// graph: to see what GS_n is good for.
     pub grasp_paths: bool,
-    /// Whether a new node that no path in GS_n joins to a component is dropped, as in the paper (Algorithm 2, lines 10 to 13).
+    /// Whether a new node that no path in GS_n joins to a component is dropped, as in the paper (Algorithm 2,
+    /// lines 10 to 13).
     pub drop_unconnected: bool,
-    /// Whether α = 1 tries the drawn node with each other component, as in the paper (Algorithm 3, line 3), or with the nearest one that
-    /// was not tried with it.
+    /// Whether α = 1 tries the drawn node with each other component, as in the paper (Algorithm 3, line 3),
+    /// or with the nearest one that was not tried with it.
     pub all_components: bool,
     /// How the planner carries out the strategy's actions.
     pub policy: SearchPolicy,
 }
 
 impl Default for InterleavedSettings {
-    /// The paper leaves the law open; this one did best in `studies/alpha.toml`. What the paper has for the rest, the preset `paper` sets.
+    /// The paper leaves the law open; this one did best in `studies/alpha.toml`. What the paper has for the
+    /// rest, the preset `paper` sets.
     fn default() -> Self {
         Self {
             start: 0.1,
@@ -85,7 +90,8 @@ impl Interleaved {
         start + (end - start) * (1.0 - (-(nodes as f64) / growth).exp())
     }
 
-    /// Line 1 of Algorithm 3, and what becomes of the node: `None` if it was tried with all of its neighbours.
+    /// Line 1 of Algorithm 3, and what becomes of the node: `None` if it was tried with all of its
+    /// neighbours.
     fn connection(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Option<Action> {
         let (node, other) = pair_to_connect(graph, context)?;
         Some(if self.settings.all_components {
@@ -133,7 +139,8 @@ impl GraphStrategy for Interleaved {
 
 /// The start and a goal that were not tried to be joined by transfer and regrasps.
 ///
-/// The paper has nothing of the kind: both are in its graph from the first line on, and are joined by what grows there.
+/// The paper has nothing of the kind: both are in its graph from the first line on, and are joined by what
+/// grows there.
 fn reach_goals(graph: &dyn GraphView) -> Option<Action> {
     let start = graph.start();
     let untried =
@@ -157,9 +164,14 @@ inventory::submit! {
         id: "graph-strategy/interleaved",
         slots: &[Slot::GraphStrategy],
         summary: "explores GS_n and connects components in turn, by the paper's biased α",
-        references: &["A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007, Algorithm 1"],
+        references: &[
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation \
+             planning, SSD 2007, Algorithm 1",
+        ],
         schema: InterleavedSettings::schema,
         check: check_settings::<InterleavedSettings>,
-        build: Build::GraphStrategy(|json, _| Ok(Box::new(Interleaved::new(InterleavedSettings::from_json(json)?)?))),
+        build: Build::GraphStrategy(|json, _| {
+            Ok(Box::new(Interleaved::new(InterleavedSettings::from_json(json)?)?))
+        }),
     }
 }

@@ -1,19 +1,21 @@
 //! `graph-strategy/lazy`: edges are checked only when a path uses them.
 //!
-//! A new node gets unchecked edges inside GS_n to its `neighbours` nearest nodes, at no cost. Once start and goal are joined, the
-//! unchecked edges of the shortest path are checked, those near its ends first (there are few ways out of an end, so that a bad
-//! edge is found early); an edge that fails leaves the graph, and the next shortest path is looked at. A path whose edges are all
-//! valid is queried, that is decomposed into transfers and regrasps. So a path in GS_n is never decomposed before its check; nor
-//! would that be unsafe: decomposition lays the path again.
+//! A new node gets unchecked edges inside GS_n to its `neighbours` nearest nodes, at no cost. Once start and
+//! goal are joined, the unchecked edges of the shortest path are checked, those near its ends first (there
+//! are few ways out of an end, so that a bad edge is found early); an edge that fails leaves the graph, and
+//! the next shortest path is looked at. A path whose edges are all valid is queried, that is decomposed into
+//! transfers and regrasps. So a path in GS_n is never decomposed before its check; nor would that be unsafe:
+//! decomposition lays the path again.
 //!
-//! Where GS_n is not connected, no number of samples joins start and goal. Therefore a share `connect` of the steps that find
-//! them apart tries two components by transfer and regrasps (Algorithm 3), which has no lazy form.
+//! Where GS_n is not connected, no number of samples joins start and goal. Therefore a share `connect` of the
+//! steps that find them apart tries two components by transfer and regrasps (Algorithm 3), which has no lazy
+//! form.
 //!
-//! It pays where paths inside GS_n are dear to check and mostly valid (fine meshes, small steps); a shortest path prefers long
-//! edges, so that where long ones mostly fail, many checks are wasted.
+//! It pays where paths inside GS_n are dear to check and mostly valid (fine meshes, small steps); a shortest
+//! path prefers long edges, so that where long ones mostly fail, many checks are wasted.
 //!
-//! Source: R. Bohlin, L. Kavraki, "Path planning using lazy PRM", ICRA 2000. Departures: nodes were checked when they were
-//! sampled, and the roadmap grows by one node when start and goal fall apart, not by a batch.
+//! Source: R. Bohlin, L. Kavraki, "Path planning using lazy PRM", ICRA 2000. Departures: nodes were checked
+//! when they were sampled, and the roadmap grows by one node when start and goal fall apart, not by a batch.
 
 use crate::nearest::untried_pair;
 use regrasp_api::{

@@ -1,8 +1,9 @@
 //! Grasps at one given pose: admissible contacts of each finger are found once and combined many times.
 //!
-//! Where the pose is given, whether a finger may touch at a contact does not depend on the draw before; and what that costs (distances to a
-//! mesh, retreats) is a hundred times what the stability of a combination costs. So each finger gets a pool of contacts that are admissible
-//! for it alone, the pools grow by turns, and random combinations are tried, the cheap test first.
+//! Where the pose is given, whether a finger may touch at a contact does not depend on the draw before; and
+//! what that costs (distances to a mesh, retreats) is a hundred times what the stability of a combination
+//! costs. So each finger gets a pool of contacts that are admissible for it alone, the pools grow by turns,
+//! and random combinations are tried, the cheap test first.
 
 use regrasp_api::{
     CallError, Configuration, Contact, Context, FingerIndex, FingerJoints, FingerSet, Reason, Task,
@@ -31,8 +32,8 @@ impl Pools {
         self.pools[finger.index()].push((contact, joints));
     }
 
-    /// A combination that is admissible as a whole, if one of some random ones is; otherwise why the last was not. Of a finger whose pool is
-    /// empty nothing is known but that.
+    /// A combination that is admissible as a whole, if one of some random ones is; otherwise why the last was
+    /// not. Of a finger whose pool is empty nothing is known but that.
     pub fn combine(
         &self,
         task: &Task<'_>,

@@ -1,13 +1,15 @@
 //! `sampler/rlg`: the random loop generator.
 //!
-//! Each loop finger-object-palm is split in an *active* part, drawn at random, and a *passive* part, solved by inverse
-//! kinematics: active are the object's pose, the contacts and the spare joints of redundant fingers; passive are the
-//! three joints that bring each fingertip to its contact (J. Cortés, T. Siméon, J.-P. Laumond, "A random loop generator
-//! for planning the motions of closed kinematic chains using PRM methods", ICRA 2002).
+//! Each loop finger-object-palm is split in an *active* part, drawn at random, and a *passive* part, solved
+//! by inverse kinematics: active are the object's pose, the contacts and the spare joints of redundant
+//! fingers; passive are the three joints that bring each fingertip to its contact (J. Cortés, T. Siméon,
+//! J.-P. Laumond, "A random loop generator for planning the motions of closed kinematic chains using PRM
+//! methods", ICRA 2002).
 //!
-//! Contacts are drawn by rejection, the cheapest test first: a fingertip outside the ball that the finger can reach costs
-//! a few nanoseconds, so that about thirty tries a finger are cheaper than listing the facets within reach. Where the pose is given,
-//! contacts that were found for one finger are combined with those of the others many times (`pools`).
+//! Contacts are drawn by rejection, the cheapest test first: a fingertip outside the ball that the finger can
+//! reach costs a few nanoseconds, so that about thirty tries a finger are cheaper than listing the facets
+//! within reach. Where the pose is given, contacts that were found for one finger are combined with those of
+//! the others many times (`pools`).
 
 use crate::chains;
 use crate::pools::Pools;
@@ -28,7 +30,8 @@ pub struct RlgSettings {
     /// Contacts that are tried for each finger at one pose.
     #[schemars(range(min = 1, max = 10_000))]
     pub contacts: usize,
-    /// The fraction of poses drawn with any orientation; the others are drawn near the motion from start to goal.
+    /// The fraction of poses drawn with any orientation; the others are drawn near the motion from start to
+    /// goal.
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub anywhere: f64,
     /// How far (degrees) the latter may turn away from that motion.
@@ -88,7 +91,8 @@ impl Rlg {
         })
     }
 
-    /// A grasp at a given pose: `poses` rounds, each of which looks for one more contact of each finger and tries combinations.
+    /// A grasp at a given pose: `poses` rounds, each of which looks for one more contact of each finger and
+    /// tries combinations.
     fn sample_at(
         &self,
         task: &Task<'_>,
@@ -120,7 +124,8 @@ impl Rlg {
         Ok(None)
     }
 
-    /// Gives `finger` a contact beside the fingers already placed; the reason of the last failure if it finds none.
+    /// Gives `finger` a contact beside the fingers already placed; the reason of the last failure if it finds
+    /// none.
     fn place(
         &self,
         task: &Task<'_>,
@@ -195,7 +200,10 @@ inventory::submit! {
         id: "sampler/rlg",
         slots: &[Slot::Sampler],
         summary: "random loop generator: pose and contacts drawn, joints by inverse kinematics",
-        references: &["J. Cortés, T. Siméon, J.-P. Laumond, A random loop generator for planning the motions of closed kinematic chains using PRM methods, ICRA 2002"],
+        references: &[
+            "J. Cortés, T. Siméon, J.-P. Laumond, A random loop generator for planning the motions of \
+             closed kinematic chains using PRM methods, ICRA 2002",
+        ],
         schema: RlgSettings::schema,
         check: check_settings::<RlgSettings>,
         build: Build::Sampler(|json, _| Ok(Box::new(Rlg::new(RlgSettings::from_json(json)?)?))),

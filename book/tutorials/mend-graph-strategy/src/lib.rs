@@ -16,7 +16,8 @@ pub struct MendSettings {
     /// The part of the steps that samples a node although there is something to mend.
     #[schemars(range(min = 0.0, max = 0.9), extend("x-unit" = "1"))]
     pub explore: f64,
-    /// How much better several small gaps are than a large one: the power of a gap's length that is added up along the way.
+    /// How much better several small gaps are than a large one: the power of a gap's length that is added up
+    /// along the way.
     #[schemars(range(min = 1.0, max = 4.0), extend("x-unit" = "1"))]
     pub power: f64,
 }
@@ -62,7 +63,8 @@ struct Gaps {
 }
 
 impl Gaps {
-    /// Measures every pair of nodes: the square of the graph's size, which the few nodes of a usual graph can bear.
+    /// Measures every pair of nodes: the square of the graph's size, which the few nodes of a usual graph can
+    /// bear.
     fn new(graph: &dyn GraphView) -> Self {
         let components = graph.components();
         let place_of = |node| components.partition_point(|&other| other < graph.component(node));
@@ -102,7 +104,8 @@ fn nodes(graph: &dyn GraphView) -> impl Iterator<Item = NodeId> {
 
 // ANCHOR: way
 impl Gaps {
-    /// The gaps on the cheapest way between components, from one of `from` to one of `to`; empty where there is no untried way.
+    /// The gaps on the cheapest way between components, from one of `from` to one of `to`; empty where there
+    /// is no untried way.
     fn way(&self, from: usize, to: &[usize], power: f64) -> Vec<Gap> {
         let mut cost = vec![f64::INFINITY; self.count];
         let mut last: Vec<Option<(usize, Gap)>> = vec![None; self.count];

@@ -52,7 +52,8 @@ pub struct EdgeView {
 /// How a new node is joined to the graph inside GS_n.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Link {
-    /// Try a checked grasp edge to each component (lines 3 to 9 of the paper's Algorithm 2), and keep the node whatever comes of it.
+    /// Try a checked grasp edge to each component (lines 3 to 9 of the paper's Algorithm 2), and keep the
+    /// node whatever comes of it.
     Components,
     /// The same, and drop the node if it reaches no component (lines 10 to 13).
     ComponentsOrDrop,
@@ -88,8 +89,8 @@ pub enum Action {
     Extend(NodeId, Vicinity, Link),
     /// Try an edge of the given kind between two nodes.
     Connect(NodeId, NodeId, EdgeKind),
-    /// Try an edge of the given kind from a node to the nearest node of every other component (Algorithm 3 of the paper); pairs that were
-    /// tried before are left out.
+    /// Try an edge of the given kind from a node to the nearest node of every other component (Algorithm 3 of
+    /// the paper); pairs that were tried before are left out.
     ConnectAll(NodeId, EdgeKind),
     /// Check an unchecked edge; if it fails it leaves the graph.
     Check(EdgeId),
@@ -119,8 +120,8 @@ pub enum Effect {
     Done,
     /// It was tried and failed: no sample, a node that was dropped, no path, an edge that left the graph.
     Failed,
-    /// It could change nothing, and nothing was tried: a pair tried before, an edge checked before or gone, a query while start and goal
-    /// lie apart.
+    /// It could change nothing, and nothing was tried: a pair tried before, an edge checked before or gone, a
+    /// query while start and goal lie apart.
     Futile,
 }
 
@@ -155,8 +156,8 @@ pub trait GraphView {
     fn configuration(&self, node: NodeId) -> &Configuration;
     /// Where a node comes from.
     fn origin(&self, node: NodeId) -> Origin;
-    /// What was done since the search for this goal was begun, or begun anew ([`SearchPolicy::restart_samples`]), first to last, each action
-    /// with what it came to.
+    /// What was done since the search for this goal was begun, or begun anew
+    /// ([`SearchPolicy::restart_samples`]), first to last, each action with what it came to.
     fn history(&self) -> &[PastAction];
     /// The component of a node, unchecked edges included.
     fn component(&self, node: NodeId) -> ComponentId;
@@ -176,16 +177,17 @@ pub trait GraphView {
 
 /// Decides what to do next, given a view of the graph.
 ///
-/// Pure in the view and the context's random stream: it has no other memory. What it wants to learn from, it finds in
-/// [`GraphView::history`].
+/// Pure in the view and the context's random stream: it has no other memory. What it wants to learn from, it
+/// finds in [`GraphView::history`].
 ///
-/// The search ends without a plan at [`Action::Stop`], at a sample beyond the budget of nodes, and after as many actions with
-/// [`Effect::Futile`] as there may be nodes.
+/// The search ends without a plan at [`Action::Stop`], at a sample beyond the budget of nodes, and after as
+/// many actions with [`Effect::Futile`] as there may be nodes.
 pub trait GraphStrategy: Send + Sync {
     /// The next action.
     fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError>;
 
-    /// How the planner carries out its actions; the program's defaults unless the strategy says otherwise. Asked once a run.
+    /// How the planner carries out its actions; the program's defaults unless the strategy says otherwise.
+    /// Asked once a run.
     fn policy(&self) -> SearchPolicy {
         SearchPolicy::default()
     }

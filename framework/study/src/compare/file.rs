@@ -15,8 +15,8 @@ pub const MOST_SEEDS: u64 = 1_000_000;
 /// How many seeds a study has unless it says otherwise.
 pub const DEFAULT_SEEDS: u64 = 20;
 
-/// A study file: what is compared on which scenarios. Variants are either the full factorial of `[[vary]]`, or listed one by one as
-/// `[[variant]]`.
+/// A study file: what is compared on which scenarios. Variants are either the full factorial of `[[vary]]`,
+/// or listed one by one as `[[variant]]`.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StudyFile {

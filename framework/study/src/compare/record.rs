@@ -54,8 +54,8 @@ pub struct Times {
     pub verification_s: f64,
     /// Planning by phase ([`PHASES`]), in all [`Times::planning_s`] but for rounding (s).
     pub phases_s: BTreeMap<String, f64>,
-    /// Planning by who computed, calls of others taken off (s): the slots by name, `clearance` for collision and distance, and `framework`
-    /// for the rest. In all [`Times::planning_s`].
+    /// Planning by who computed, calls of others taken off (s): the slots by name, `clearance` for collision
+    /// and distance, and `framework` for the rest. In all [`Times::planning_s`].
     pub roles_s: BTreeMap<String, f64>,
 }
 
@@ -71,11 +71,13 @@ pub struct Counts {
     pub components: usize,
     /// The graph's part in GS_n, and what became of it.
     pub roadmap: RoadmapStatistics,
-    /// Questions of collision or distance that planning asked, one of which may be about several bodies; 0 where nobody counted.
+    /// Questions of collision or distance that planning asked, one of which may be about several bodies; 0
+    /// where nobody counted.
     pub collision_tests: u64,
     /// Goals that the motion reaches; all of them exactly where the run is solved.
     pub goals_reached: usize,
-    /// Calls of the plugin in each slot, and its rejections by cause; slots that were not called are left out.
+    /// Calls of the plugin in each slot, and its rejections by cause; slots that were not called are left
+    /// out.
     pub plugins: BTreeMap<Slot, PluginStatistics>,
     /// What plugins noted under names of their own.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
@@ -130,7 +132,8 @@ pub struct Certified {
 pub struct RunRecord {
     /// The scenario's name, that of one of [`super::Study::scenarios`].
     pub scenario: String,
-    /// The variant's name, that of one of [`super::Study::variants`]; the plugins are [`super::StudyScenario::plugins`].
+    /// The variant's name, that of one of [`super::Study::variants`]; the plugins are
+    /// [`super::StudyScenario::plugins`].
     pub variant: String,
     /// The seed of all random streams.
     pub seed: u64,

@@ -21,7 +21,8 @@ pub(crate) trait Detour {
         false
     }
 
-    /// Appends a way from `ends.0`, without it, to `ends.1` to the postures; false if there is none to be found.
+    /// Appends a way from `ends.0`, without it, to `ends.1` to the postures; false if there is none to be
+    /// found.
     fn search(
         &self,
         flight: &Flight<'_>,
@@ -161,21 +162,23 @@ impl Regrasping<'_> {
         Ok(None)
     }
 
-    /// Lifts the finger off the object where it touches: the greatest height tried that it reaches, 0 where it is free.
+    /// Lifts the finger off the object where it touches: the greatest height tried that it reaches, 0 where
+    /// it is free.
     fn leave(&self, flight: &Flight<'_>, end: End<'_>, postures: &mut Vec<FingerJoints>) -> Option<f64> {
         let Some(contact) = end.contact else { return Some(0.0) };
         let resolution = flight.task.resolution;
         let lowest = resolution.retreat.into_iter().fold(resolution.lift, f64::min);
         let last = (self.heights - 1).max(1) as f64;
-        // A little higher, so that rounding leaves no finger short of the height at which it counts as lifted.
+        // A little higher, so that rounding leaves no finger short of the height at which it counts as
+        // lifted.
         let height = |k: usize| 1.01 * (resolution.lift + (lowest - resolution.lift) * k as f64 / last);
         let mut heights = (0..self.heights).map(height);
         heights.find(|&height| flight.lift(contact, end.joints, (height, lowest), postures))
     }
 }
 
-/// Appends the direct way from the lifted posture `a` to `b`: along the geodesic between two contacts, otherwise straight; or says what
-/// bars it.
+/// Appends the direct way from the lifted posture `a` to `b`: along the geodesic between two contacts,
+/// otherwise straight; or says what bars it.
 fn direct(
     flight: &Flight<'_>,
     ends: (End<'_>, End<'_>),
@@ -194,7 +197,8 @@ fn direct(
     Ok(flight.follow(slide, lengths, heights, (a, b), postures))
 }
 
-/// Whether the other fingers hold the object; their grasp does not change, so one test holds for the whole motion.
+/// Whether the other fingers hold the object; their grasp does not change, so one test holds for the whole
+/// motion.
 fn others_hold(
     task: &Task<'_>,
     from: &Configuration,
@@ -224,7 +228,8 @@ fn unfit(flight: &Flight<'_>, target: End<'_>) -> Option<Reason> {
     (!flight.free(target.joints, rule)).then_some(Reason::Collision)
 }
 
-/// Appends the motion to the path; the finger touches nothing before `end`, to which the last posture belongs.
+/// Appends the motion to the path; the finger touches nothing before `end`, to which the last posture
+/// belongs.
 fn store(path: &mut Path, end: &Configuration, finger: FingerIndex, postures: &[FingerJoints]) {
     let mut moving = end.clone();
     moving.contacts[finger] = None;

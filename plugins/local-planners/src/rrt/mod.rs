@@ -18,8 +18,8 @@ const ID: &str = "local-planner/rrt";
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RrtSettings {
-    /// Most nodes of the two random trees together, 0 (no search) to 100,000. Our choice: enough to pass an obstacle, little enough
-    /// that a hopeless search does not hold the planner up.
+    /// Most nodes of the two random trees together, 0 (no search) to 100,000. Our choice: enough to pass an
+    /// obstacle, little enough that a hopeless search does not hold the planner up.
     #[schemars(range(min = 0, max = 100_000))]
     pub nodes: usize,
     /// Longest edge of a tree, as a bound of the finger's travel (m). Our choice.
@@ -28,7 +28,8 @@ pub struct RrtSettings {
     /// Tries to shorten the path that the trees find. Our choice.
     #[schemars(range(min = 0, max = 10_000))]
     pub shortcuts: usize,
-    /// Whether the way along the geodesic is tried before the trees. The paper searches every regrasp by RRT (section IV.C).
+    /// Whether the way along the geodesic is tried before the trees. The paper searches every regrasp by RRT
+    /// (section IV.C).
     pub direct: bool,
 }
 
@@ -42,13 +43,14 @@ impl Settings for RrtSettings {}
 
 /// Moves one finger to a new contact or a free posture, the object resting in the grasp of the others.
 ///
-/// Lifts the fingertip along the contact's normal, follows the geodesic between the two contacts at that height, touches down along the
-/// new normal. Where the way at that height is barred, and between free postures, two random trees in the finger's joint space
-/// search another (Kuffner & LaValle, "RRT-Connect: an efficient approach to single-query path planning", ICRA 2000, after LaValle & Kuffner,
-/// "Randomized kinodynamic planning", IJRR 2001, which the paper names).
+/// Lifts the fingertip along the contact's normal, follows the geodesic between the two contacts at that
+/// height, touches down along the new normal. Where the way at that height is barred, and between free
+/// postures, two random trees in the finger's joint space search another (Kuffner & LaValle, "RRT-Connect: an
+/// efficient approach to single-query path planning", ICRA 2000, after LaValle & Kuffner, "Randomized
+/// kinodynamic planning", IJRR 2001, which the paper names).
 ///
-/// All or nothing. Refused for `stability` where the other fingers do not hold the object, `retreat` where the finger can
-/// lift off at neither height of the task, otherwise for what bars the geodesic.
+/// All or nothing. Refused for `stability` where the other fingers do not hold the object, `retreat` where
+/// the finger can lift off at neither height of the task, otherwise for what bars the geodesic.
 #[derive(Clone, Debug)]
 pub struct Rrt {
     settings: RrtSettings,
@@ -109,11 +111,14 @@ regrasp_api::inventory::submit! {
     Entry {
         id: ID,
         slots: &[SLOT],
-        summary: "lifts the finger, follows the geodesic, touches down; random trees search a way around obstacles",
+        summary: "lifts the finger, follows the geodesic, touches down; random trees search a way \
+         around obstacles",
         references: &[
-            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007",
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation \
+             planning, SSD 2007",
             "S. M. LaValle, J. J. Kuffner, Randomized kinodynamic planning, IJRR 2001",
-            "J. J. Kuffner, S. M. LaValle, RRT-Connect: an efficient approach to single-query path planning, ICRA 2000",
+            "J. J. Kuffner, S. M. LaValle, RRT-Connect: an efficient approach to single-query path \
+             planning, ICRA 2000",
         ],
         schema: RrtSettings::schema,
         check: check_settings::<RrtSettings>,

@@ -226,6 +226,8 @@ inventory::submit! {
         ],
         schema: ProjectionSettings::schema,
         check: check_settings::<ProjectionSettings>,
-        build: Build::Sampler(|json, _| Ok(Box::new(ProjectionSampler::new(ProjectionSettings::from_json(json)?)?))),
+        build: Build::Sampler(|json, _| {
+            Ok(Box::new(ProjectionSampler::new(ProjectionSettings::from_json(json)?)?))
+        }),
     }
 }
