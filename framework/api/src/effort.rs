@@ -5,9 +5,11 @@ use crate::{FingerIndex, FingerJoints, Hand, MAX_FINGER_JOINTS, Pose, Vec3};
 /// One joint's part in what its finger exerts: effort = column · f + spin · m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointBound {
-    /// Velocity, in O, of the fingertip's material point at the contact per joint speed (m/rad; no unit where prismatic).
+    /// Velocity, in O, of the fingertip's material point at the contact per joint speed (m/rad; no unit where
+    /// prismatic).
     pub column_O: Vec3,
-    /// Angular velocity of the fingertip about the contact's *outward* normal per joint speed (no unit; 0 where prismatic).
+    /// Angular velocity of the fingertip about the contact's *outward* normal per joint speed (no unit; 0
+    /// where prismatic).
     pub spin: f64,
     /// The largest effort of the joint, either way (N·m; N where prismatic).
     pub limit: f64,
@@ -33,7 +35,8 @@ impl EffortBounds {
 
     /// Those of a finger whose ball touches the object along the outward normal `n_O`, in O.
     ///
-    /// The material point that touches lies at -r n from the ball's centre, so its velocity is J_v q' + J_w q' × (-r n).
+    /// The material point that touches lies at -r n from the ball's centre, so its velocity is J_v q' + J_w
+    /// q' × (-r n).
     pub fn at(hand: &dyn Hand, finger: FingerIndex, joints: &FingerJoints, X_HO: &Pose, n_O: &Vec3) -> Self {
         let tip = hand.tip_kinematics(finger, joints);
         let n_H = X_HO.rotation * n_O;
@@ -59,7 +62,8 @@ impl EffortBounds {
         self
     }
 
-    /// The joints' efforts (N·m; N) that exert a force on the object (N, in O) and a torque about the outward normal (N·m): Jᵀ f.
+    /// The joints' efforts (N·m; N) that exert a force on the object (N, in O) and a torque about the outward
+    /// normal (N·m): Jᵀ f.
     pub fn efforts_of(&self, force_O: &Vec3, torsion: f64) -> FingerJoints {
         let mut efforts = FingerJoints::zeros(usize::from(self.count));
         for (effort, joint) in efforts.iter_mut().zip(self.joints()) {

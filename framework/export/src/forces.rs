@@ -1,6 +1,7 @@
 //! The forces that hold the object, state by state.
 //!
-//! S. Boyd, B. Wegbreit, "Fast computation of optimal contact forces", IEEE T-RO 2007; `regrasp-physics` chooses them.
+//! S. Boyd, B. Wegbreit, "Fast computation of optimal contact forces", IEEE T-RO 2007; `regrasp-physics`
+//! chooses them.
 
 use crate::ExportError;
 use regrasp_api::{Configuration, FingerIndex, Hand, ObjectModel, Vec3};
@@ -16,8 +17,9 @@ pub(crate) struct Forces {
 }
 
 impl Forces {
-    /// Forces that hold the object against gravity with the least share of the friction that the plan claims within the joints' efforts; `grip` is the most
-    /// normal force of a contact (N), what the plan claims where `None`.
+    /// Forces that hold the object against gravity with the least share of the friction that the plan claims
+    /// within the joints' efforts; `grip` is the most normal force of a contact (N), what the plan claims
+    /// where `None`.
     pub fn new(
         plan: &Plan,
         motion: &Motion,
@@ -44,7 +46,8 @@ impl Forces {
         self.held[state].as_ref().and_then(|held| held.forces[finger])
     }
 
-    /// The least distance of a force from its cone (N); not positive where no forces within cones and efforts hold the object.
+    /// The least distance of a force from its cone (N); not positive where no forces within cones and efforts
+    /// hold the object.
     pub fn margin(&self, state: usize) -> Option<f64> {
         self.held[state].as_ref().map(|held| held.margin)
     }

@@ -4,7 +4,8 @@ use crate::PhysicsError;
 use crate::settings::check;
 use regrasp_api::Vec3;
 
-/// Friction of all contacts: |f_t|²/μ² + m²/γ² ≤ f_n², with f_n, f_t the normal and tangential force (N) and m the torque about the normal (N·m).
+/// Friction of all contacts: |f_t|²/μ² + m²/γ² ≤ f_n², with f_n, f_t the normal and tangential force (N) and
+/// m the torque about the normal (N·m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
     /// Coefficient of friction μ, no unit, above 0.
@@ -35,7 +36,8 @@ impl Friction {
         self.gamma > 0.0
     }
 
-    /// The distance of a force from the cone's boundary (N), positive inside, for the outward normal `n`: μ f_n - √(|f_t|² + (μ m/γ)²).
+    /// The distance of a force from the cone's boundary (N), positive inside, for the outward normal `n`: μ
+    /// f_n - √(|f_t|² + (μ m/γ)²).
     pub fn margin(&self, n: &Vec3, exerted: &ContactForce) -> f64 {
         let normal = -n.dot(&exerted.force);
         let spin = if self.has_torsion() { exerted.spin / self.lever() } else { 0.0 };

@@ -8,9 +8,11 @@ use regrasp_api::{
     Configuration, EffortBounds, FingerIndex, FingerJoints, FingerSet, Hand, ObjectModel, PerFinger, Vec3,
 };
 
-/// How much of the friction that a stage leaves over its forces may rely on, so that efforts stay away from their limits.
+/// How much of the friction that a stage leaves over its forces may rely on, so that efforts stay away from
+/// their limits.
 const EASE: f64 = 0.25;
-/// Shares of the friction below this are not striven for: nothing slips there, and squeezing harder has a price.
+/// Shares of the friction below this are not striven for: nothing slips there, and squeezing harder has a
+/// price.
 const ENOUGH: f64 = 0.3;
 /// Where even all friction holds nothing, what is tried is this much more than the smallest share that would.
 const BEYOND: f64 = 1.05;
@@ -20,10 +22,11 @@ const BEYOND: f64 = 1.05;
 pub struct Held {
     /// What each finger exerts on the object, given in H; `None` for fingers that do not hold it.
     pub forces: PerFinger<Option<ContactForce>>,
-    /// The joints' efforts that exert this (N·m; N where prismatic): Jᵀ f, 0 for fingers that do not hold. The links' weight comes on top.
+    /// The joints' efforts that exert this (N·m; N where prismatic): Jᵀ f, 0 for fingers that do not hold.
+    /// The links' weight comes on top.
     pub efforts: PerFinger<FingerJoints>,
-    /// The largest share of the friction that a force relies on (no unit). Above 1 no forces within cones and efforts hold the object, and
-    /// these are the nearest.
+    /// The largest share of the friction that a force relies on (no unit). Above 1 no forces within cones and
+    /// efforts hold the object, and these are the nearest.
     pub share: f64,
     /// The largest share of a joint's effort limit that the forces take (no unit).
     pub effort_share: f64,
@@ -41,8 +44,9 @@ struct Grip {
 
 /// Finds the forces of whole stages.
 ///
-/// First the smallest share of the friction with which every state of the stage can be held, then for each state the analytic
-/// centre of the forces that need a little more than that: unique and continuous along the stage, inside the cones and the efforts.
+/// First the smallest share of the friction with which every state of the stage can be held, then for each
+/// state the analytic centre of the forces that need a little more than that: unique and continuous along the
+/// stage, inside the cones and the efforts.
 pub(crate) struct Holder<'a> {
     hand: &'a dyn Hand,
     object: &'a ObjectModel,
@@ -139,8 +143,8 @@ impl<'a> Holder<'a> {
     }
 }
 
-/// The smallest share of each state, as far as it tells of the stage: a state that can do with what an earlier one needs counts with the
-/// share of the forces that were found.
+/// The smallest share of each state, as far as it tells of the stage: a state that can do with what an
+/// earlier one needs counts with the share of the forces that were found.
 fn needs(grips: &[Grip]) -> Vec<Option<Smallest>> {
     let mut most: Option<f64> = None;
     let mut before: Option<Smallest> = None;
@@ -162,7 +166,8 @@ fn needs(grips: &[Grip]) -> Vec<Option<Smallest>> {
     each.collect()
 }
 
-/// The centre of the forces that need at most `share` of the friction, from those of the state before where they are inside.
+/// The centre of the forces that need at most `share` of the friction, from those of the state before where
+/// they are inside.
 fn centre(grip: &Grip, share: f64, from: Option<&Forces>) -> Option<Forces> {
     let search = Search { bearings: &grip.bearings, share };
     let start = from.filter(|from| search.inside(from)).copied();

@@ -1,5 +1,5 @@
-//! Chooses grasp forces within friction cones and the joints' efforts, and simulates transfers and whole motions in rapier3d: the hand as jointed bodies driven by motors,
-//! the object free under gravity.
+//! Chooses grasp forces within friction cones and the joints' efforts, and simulates transfers and whole
+//! motions in rapier3d: the hand as jointed bodies driven by motors, the object free under gravity.
 //!
 //! [`grasp_forces`] needs no simulator; everything else is behind the feature `rapier`.
 //!
@@ -11,8 +11,9 @@
 //! - the control: positions and speeds of the plan, and fed forward the efforts of a grip (q* = q + K⁻¹ Jᵀ f). Nothing looks at
 //!   where the object is: it stays on its path because the grip's stiffness keeps it there.
 //!
-//! What is left out: weight of the links (the motors are taken to hold it), true masses of the links (nominal ones), shapes of the links (plans are free of
-//! collisions), torsional friction (rapier's contacts have none), compliance of skin.
+//! What is left out: weight of the links (the motors are taken to hold it), true masses of the links (nominal
+//! ones), shapes of the links (plans are free of collisions), torsional friction (rapier's contacts have
+//! none), compliance of skin.
 //!
 //! Deterministic: fixed steps, one thread, no random numbers; the same binary and machine give the same bits.
 

@@ -14,12 +14,14 @@ use regrasp_world::World;
 pub struct ReplaySettings {
     /// Motors, contacts and time step.
     pub simulation: SimulationSettings,
-    /// What ends the replay: by default only an object that is 20 mm or 0.5 rad away from its path, which counts as dropped.
+    /// What ends the replay: by default only an object that is 20 mm or 0.5 rad away from its path, which
+    /// counts as dropped.
     pub bounds: Bounds,
-    /// What the motion's times are multiplied with, in 0.1 to 100; 2 by default: plans are timed for the joints' limits, and grips balance the weight alone, not the
-    /// forces that move it.
+    /// What the motion's times are multiplied with, in 0.1 to 100; 2 by default: plans are timed for the
+    /// joints' limits, and grips balance the weight alone, not the forces that move it.
     pub slowdown: f64,
-    /// Time (s) between two stages in which the forces pass from one set of fingers to the next, and for which the object is held at the end; 0.01 to 10.
+    /// Time (s) between two stages in which the forces pass from one set of fingers to the next, and for
+    /// which the object is held at the end; 0.01 to 10.
     pub shift: f64,
     /// How near the object must come to arrive: distance (m) and angle (rad) at the end.
     pub arrival: (f64, f64),
@@ -51,10 +53,12 @@ pub struct Moment {
 pub struct StageReport {
     /// The finger that moved in a regrasp; `None` in a transfer.
     pub moving: Option<FingerIndex>,
-    /// Worst values and, if the replay ended here, why. A contact that loses the object is reported with a gap of 1 mm at most.
+    /// Worst values and, if the replay ended here, why. A contact that loses the object is reported with a
+    /// gap of 1 mm at most.
     pub outcome: Outcome,
-    /// The least distance of a planned force from its cone's boundary (N). Where it is not positive, no forces within the cones and the joints' efforts
-    /// hold the object against gravity: a closed grasp may need forces that the fingers do not have. The nearest ones are tried.
+    /// The least distance of a planned force from its cone's boundary (N). Where it is not positive, no
+    /// forces within the cones and the joints' efforts hold the object against gravity: a closed grasp may
+    /// need forces that the fingers do not have. The nearest ones are tried.
     pub margin: f64,
     /// Distance of the object's origin from its planned place at the stage's end (m).
     pub end_distance: f64,
@@ -62,8 +66,8 @@ pub struct StageReport {
     pub end_angle: f64,
     /// When the stage began (s): forces pass over to the fingers that hold in it, then it moves.
     pub begin: f64,
-    /// Where the object was as each state was passed, as far as the stage was made; at its last moment where the replay ended in it, and at the end of the
-    /// last stage when it was held for a while.
+    /// Where the object was as each state was passed, as far as the stage was made; at its last moment where
+    /// the replay ended in it, and at the end of the last stage when it was held for a while.
     pub track: Vec<Moment>,
 }
 
@@ -98,11 +102,13 @@ impl ReplayReport {
     }
 }
 
-/// Replays the stages of a motion that solves the problem: hand and object under gravity, palm and obstacles fixed.
+/// Replays the stages of a motion that solves the problem: hand and object under gravity, palm and obstacles
+/// fixed.
 ///
-/// A regrasp's finger moves freely; the others hold. Between two stages the forces pass over from one grip to the next while
-/// everything rests, so that a finger is unloaded before it lifts and pressed on before it carries: any blend of two balanced grips
-/// is balanced and within the cones. The problem stands alone: its meshes are in it.
+/// A regrasp's finger moves freely; the others hold. Between two stages the forces pass over from one grip to
+/// the next while everything rests, so that a finger is unloaded before it lifts and pressed on before it
+/// carries: any blend of two balanced grips is balanced and within the cones. The problem stands alone: its
+/// meshes are in it.
 pub fn replay(
     problem: &Problem,
     stages: &[Stage<'_>],
@@ -173,7 +179,8 @@ impl Run<'_> {
         StageReport { moving: stage.moving, outcome, margin, end_distance, end_angle, begin, track }
     }
 
-    /// The stage's schedule, forces passing over first, up to where no forces hold the object; and the least margin of a grip (N).
+    /// The stage's schedule, forces passing over first, up to where no forces hold the object; and the least
+    /// margin of a grip (N).
     fn knots(&mut self, stage: &Stage<'_>, is_last: bool) -> (Vec<Knot>, f64) {
         let Scene { hand, object, g_H, .. } = self.scene;
         let holder =

@@ -2,7 +2,8 @@
 
 use crate::PhysicsError;
 
-/// Motors, contacts and time of a simulation. Every field is public; [`SimulationSettings::validate`] checks the ranges.
+/// Motors, contacts and time of a simulation. Every field is public; [`SimulationSettings::validate`] checks
+/// the ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimulationSettings {
     /// Stiffness of a revolute joint's motor (N·m/rad), in 0.1 to 1e4.
@@ -11,9 +12,11 @@ pub struct SimulationSettings {
     pub linear_stiffness: f64,
     /// Damping of every motor as a time (s): a motor's damping is its stiffness times this, in 1e-4 to 1.
     pub damping_time: f64,
-    /// Coefficient of friction between fingertips and object in the simulation; the object's own where `None`. 0 to 10.
+    /// Coefficient of friction between fingertips and object in the simulation; the object's own where
+    /// `None`. 0 to 10.
     pub friction: Option<f64>,
-    /// Mass of the simulated object (kg), its inertia in proportion; the object's own where `None`. 1e-6 to 1e6.
+    /// Mass of the simulated object (kg), its inertia in proportion; the object's own where `None`. 1e-6 to
+    /// 1e6.
     pub mass: Option<f64>,
     /// Time step (s), in 1e-5 to 0.02.
     pub time_step: f64,

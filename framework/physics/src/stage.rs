@@ -17,23 +17,27 @@ pub struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// The fingers that hold the object in this stage's state `q`: in a regrasp all that touch but the one that moves.
+    /// The fingers that hold the object in this stage's state `q`: in a regrasp all that touch but the one
+    /// that moves.
     pub fn holding(&self, q: &Configuration) -> FingerSet {
         self.moving.map_or(q.holding(), |finger| q.holding().without(finger))
     }
 
-    /// The friction that forces may rely on: contacts may spin in a transfer and then carry no torque about their normals.
+    /// The friction that forces may rely on: contacts may spin in a transfer and then carry no torque about
+    /// their normals.
     pub fn friction(&self, friction: Friction) -> Friction {
         if self.moving.is_some() { friction } else { Friction::point(friction.mu) }
     }
 }
 
-/// The forces that hold the object in every state of a motion, stage by stage: those that need least of the friction within the joints' efforts.
+/// The forces that hold the object in every state of a motion, stage by stage: those that need least of the
+/// friction within the joints' efforts.
 ///
-/// `friction` is what there is: the object's, or what a plan claims. Of the settings only `grip` and `effort_share` matter. `g_H` is the
-/// acceleration of gravity (m/s², in H). A state's entry is `None` where no forces hold the object, whatever the friction. From one
-/// stage to the next the forces jump, though the state is the same: other fingers hold; let them pass over while everything rests. Any
-/// blend of the two is balanced, within the cones and the efforts, since all of these are convex.
+/// `friction` is what there is: the object's, or what a plan claims. Of the settings only `grip` and
+/// `effort_share` matter. `g_H` is the acceleration of gravity (m/s², in H). A state's entry is `None` where
+/// no forces hold the object, whatever the friction. From one stage to the next the forces jump, though the
+/// state is the same: other fingers hold; let them pass over while everything rests. Any blend of the two is
+/// balanced, within the cones and the efforts, since all of these are convex.
 pub fn grasp_forces(
     (hand, object, g_H): (&dyn Hand, &ObjectModel, Vec3),
     friction: Friction,

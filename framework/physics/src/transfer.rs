@@ -27,8 +27,9 @@ impl TransferSimulator {
 
     /// Moves the object through the states at the given pace, and holds it at the end for a moment.
     ///
-    /// The forces are planned for the friction coefficient `mu` and the object's own mass, whatever the settings simulate. `g_H` is
-    /// the acceleration of gravity (m/s², in H). Cost: about 20 µs for each time step of four fingers.
+    /// The forces are planned for the friction coefficient `mu` and the object's own mass, whatever the
+    /// settings simulate. `g_H` is the acceleration of gravity (m/s², in H). Cost: about 20 µs for each time
+    /// step of four fingers.
     pub fn simulate(
         &self,
         (hand, object, g_H): (&dyn Hand, &ObjectModel, Vec3),

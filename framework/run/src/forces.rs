@@ -1,13 +1,13 @@
 //! The forces that hold the object, written into a plan's states.
 
-use super::Setup;
+use crate::Setup;
 use regrasp_api::{Criterion, Problem, Rotation, Vec3};
 use regrasp_physics::{Friction, Held, SimulationSettings, Stage, grasp_forces};
 use regrasp_plan::{Claims, Motion, SegmentKind, SegmentRecord};
 
 impl Setup<'_> {
-    /// Writes into each state the forces that hold the object there, without torques about the contacts' normals; leaves out states that only
-    /// such torques, or no forces at all, could hold.
+    /// Writes into each state the forces that hold the object there, without torques about the contacts'
+    /// normals; leaves out states that only such torques, or no forces at all, could hold.
     pub(crate) fn write_forces(
         &self,
         problem: &Problem,
@@ -33,7 +33,10 @@ impl Setup<'_> {
         let Ok(held) = grasp_forces(parts, Friction::point(cone.mu), &stages, &settings) else { return };
         for ((record, segment), held) in records.iter_mut().zip(&motion.segments).zip(&held) {
             for ((state, q), held) in record.states.iter_mut().zip(&segment.states).zip(held) {
-                state.forces = held.as_ref().map(|held| forces_O(held, &q.X_HO.rotation));
+                // Soft fingers may hold by torques instead, which a plan does not record.
+                let enough = |held: &&Held| cone.gamma == 0.0 || held.share <= settings.relied;
+                let held = held.as_ref().filter(enough);
+                state.forces = held.map(|held| forces_O(held, &q.X_HO.rotation));
             }
         }
     }

@@ -11,7 +11,8 @@ use regrasp_planner::Outcome;
 use serde_json::Value;
 
 impl Setup<'_> {
-    /// The plan file of an outcome of this problem, which is the scenario's up to the share of the friction that it was planned with; without a certificate; without segments where no goal was reached.
+    /// The plan file of an outcome of this problem, which is the scenario's up to the share of the friction
+    /// that it was planned with; without a certificate; without segments where no goal was reached.
     pub fn plan_file(
         &self,
         problem: &Problem,

@@ -1,4 +1,5 @@
-//! `stability-test/holding`: forces within the joints' efforts hold the object's weight and disturbances at a share of the friction.
+//! `stability-test/holding`: forces within the joints' efforts hold the object's weight and disturbances at a
+//! share of the friction.
 
 use regrasp_api::{
     Assessment, Build, BuildError, CallError, Certificate, Context, Criterion, Entry, FingerIndex, Grasp,
@@ -17,7 +18,8 @@ const ID: &str = "stability-test/holding";
 pub struct HoldingSettings {
     /// Whether the object's weight must be held.
     pub weight: bool,
-    /// The share of the friction that the plan claims to rely on (no unit); the planner hands the test cones of that friction. By default 0.8.
+    /// The share of the friction that the plan claims to rely on (no unit); the planner hands the test cones
+    /// of that friction. By default 0.8.
     #[schemars(range(min = 0.05, max = 1.0), extend("x-unit" = "1"))]
     pub friction_factor: f64,
     /// Largest disturbing force at the centre of mass, in any direction (N); 0 for none.
@@ -31,7 +33,8 @@ pub struct HoldingSettings {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(example = 10.0)]
     pub max_normal_force: Option<f64>,
-    /// The share of friction and efforts that is kept back (no unit), so that what holds at a plan's states holds between them too.
+    /// The share of friction and efforts that is kept back (no unit), so that what holds at a plan's states
+    /// holds between them too.
     #[schemars(range(min = 0.0, max = 0.5), extend("x-unit" = "1"))]
     pub reserve: f64,
 }
@@ -51,20 +54,23 @@ impl Default for HoldingSettings {
 
 impl Settings for HoldingSettings {}
 
-/// Stable where contact forces inside the cones, with joint efforts Jᵀf within the limits, hold the object's weight and every disturbance of a set.
+/// Stable where contact forces inside the cones, with joint efforts Jᵀf within the limits, hold the object's
+/// weight and every disturbance of a set.
 ///
-/// The efforts come with the grasp ([`Grasp::efforts`]); a contact that carries none is bounded by `max_normal_force` alone. Elliptic cones are
-/// taken exactly. For the weight alone, and with each of the 24 wrenches that [`regrasp_api::Load`] describes, some forces must balance: then,
-/// cones and efforts being convex, everything between is balanced too. Forces are found by Newton's method to the analytic centre of those
-/// that balance, in the manner of Boyd & Wegbreit, "Fast computation of optimal contact forces", T-RO 2007. A yes is proved by forces strictly inside, a
-/// no by a twist on which the load has more power than the fingers can give, their joints at the efforts' limits; neither gives
-/// [`Stability::Undecided`].
+/// The efforts come with the grasp ([`Grasp::efforts`]); a contact that carries none is bounded by
+/// `max_normal_force` alone. Elliptic cones are taken exactly. For the weight alone, and with each of the 24
+/// wrenches that [`regrasp_api::Load`] describes, some forces must balance: then, cones and efforts being
+/// convex, everything between is balanced too. Forces are found by Newton's method to the analytic centre of
+/// those that balance, in the manner of Boyd & Wegbreit, "Fast computation of optimal contact forces", T-RO
+/// 2007. A yes is proved by forces strictly inside, a no by a twist on which the load has more power than the
+/// fingers can give, their joints at the efforts' limits; neither gives [`Stability::Undecided`].
 ///
-/// Verdicts depend on the object's orientation, mass and centre of mass and on the fingers' postures. They are monotone in friction, efforts,
-/// `max_normal_force` and added contacts.
+/// Verdicts depend on the object's orientation, mass and centre of mass and on the fingers' postures. They
+/// are monotone in friction, efforts, `max_normal_force` and added contacts.
 ///
-/// The margin is 1 less the smallest share of the cones' friction that holds the weight (no unit). The certificate of a stable grasp is
-/// forces (N) that hold the weight; that of an unstable one the object's twist.
+/// The margin is 1 less the smallest share of the cones' friction that holds the weight (no unit). The
+/// certificate of a stable grasp is forces (N) that hold the weight; that of an unstable one the object's
+/// twist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Holding {
     settings: HoldingSettings,
@@ -89,7 +95,10 @@ impl Holding {
     }
 
     fn bearings(&self, grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Result<Bearings, CallError> {
-        let bearings = self.load.bearings(grasp, lifted, 1.0 - self.settings.reserve);
+        // The planner hands over less friction than there is, but all of the torsional friction.
+        let part = 1.0 - self.settings.reserve;
+        let torsion_part = part * self.settings.friction_factor;
+        let bearings = self.load.bearings(grasp, lifted, (part, torsion_part));
         bearings.ok_or_else(|| CallError::Unsupported {
             plugin: ID.into(),
             reason: "polyhedral cones; choose a contact model with elliptic ones, or `linearised`".into(),

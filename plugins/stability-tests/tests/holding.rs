@@ -86,7 +86,8 @@ fn a_yes_is_proved_by_forces_in_balance_within_cones_and_efforts() {
             Certificate::SeparatingTwist { v_O, w_O } => {
                 assert_eq!(assessed.stability, Stability::Unstable);
                 found[1] += 1;
-                // The object gives way so that its weight does more work than the fingers at their limits can.
+                // The object gives way so that its weight does more work than the fingers at their limits
+                // can.
                 let centroid =
                     case.contacts.iter().map(|c| c.0 * 0.03).sum::<Vec3>() / case.contacts.len() as f64;
                 let at = |p: Vec3| v_O + w_O.cross(&(p - centroid));
@@ -101,7 +102,8 @@ fn a_yes_is_proved_by_forces_in_balance_within_cones_and_efforts() {
     assert!(found[0] > 80 && found[1] > 80, "{found:?}");
 }
 
-/// The most power of one contact's forces on the velocity of its point, from below: rays of its cone as far as the efforts let them go.
+/// The most power of one contact's forces on the velocity of its point, from below: rays of its cone as far
+/// as the efforts let them go.
 fn most_power((n_O, mu, bounds): &(Vec3, f64, EffortBounds), velocity: &Vec3) -> f64 {
     let tangent = any_orthogonal(n_O);
     let other = n_O.cross(&tangent);

@@ -29,7 +29,8 @@ pub enum Criterion {
     /// Force closure: the contacts resist every small wrench.
     #[default]
     Closure,
-    /// Bounded contact forces hold the object's weight and this load. The verdict depends on the object's orientation.
+    /// Bounded contact forces hold the object's weight and this load. The verdict depends on the object's
+    /// orientation.
     Equilibrium(Load),
     /// Forces within the joints' efforts, at a share of the friction, hold the object's weight and this load.
     Holding(HoldLoad),
@@ -37,9 +38,10 @@ pub enum Criterion {
 
 /// The disturbances that a grasp must resist beside gravity, and the forces that it may use.
 ///
-/// A force f at the object's centre of mass and a torque m with |f|/F + |m|/T ≤ 1. They count as resisted where the twelve vertices of the
-/// regular icosahedron around each of the two balls are: (0, ±1, ±φ) and its cyclic permutations, φ the golden ratio, along the object's
-/// axes, scaled so that the icosahedron's faces touch the ball.
+/// A force f at the object's centre of mass and a torque m with |f|/F + |m|/T ≤ 1. They count as resisted
+/// where the twelve vertices of the regular icosahedron around each of the two balls are: (0, ±1, ±φ) and its
+/// cyclic permutations, φ the golden ratio, along the object's axes, scaled so that the icosahedron's faces
+/// touch the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
@@ -71,16 +73,17 @@ pub struct HoldLoad {
 /// Something that anybody can check by arithmetic and that proves a verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Certificate {
-    /// Contact forces on the object in its frame (N per unit, one for each contact) with torques about the *inward* normal
-    /// (N·m): balanced, strictly inside every cone. For [`Criterion::Equilibrium`] in N, balanced together with the object's weight.
+    /// Contact forces on the object in its frame (N per unit, one for each contact) with torques about the
+    /// *inward* normal (N·m): balanced, strictly inside every cone. For [`Criterion::Equilibrium`] in N,
+    /// balanced together with the object's weight.
     InternalForce {
         /// Force at each contact, in O.
         forces_O: Vec<Vec3>,
         /// Torsional torque about the inward normal at each contact.
         torsions: Vec<f64>,
     },
-    /// A twist (velocity of the object's points at the contacts' centroid, angular velocity), against which no contact
-    /// resists: the grasp is not closed.
+    /// A twist (velocity of the object's points at the contacts' centroid, angular velocity), against which
+    /// no contact resists: the grasp is not closed.
     SeparatingTwist {
         /// Linear velocity, in O, of the point of O at the contacts' centroid.
         v_O: Vec3,
@@ -96,7 +99,8 @@ pub enum Certificate {
 pub struct Assessment {
     /// The verdict; the same as [`StabilityTest::test`] gives.
     pub stability: Stability,
-    /// A certified lower bound of the margin, in the unit that the plugin documents; 0 or less when not stable.
+    /// A certified lower bound of the margin, in the unit that the plugin documents; 0 or less when not
+    /// stable.
     pub margin_lower: f64,
     /// An upper bound of the margin.
     pub margin_upper: f64,
@@ -106,14 +110,14 @@ pub struct Assessment {
 
 /// Decides whether a grasp can hold the object.
 ///
-/// Laws: invariant under a rigid motion of the object's frame (with its centre of mass and load, where those count) and under
-/// permutation of the contacts; verdicts are monotone in the friction and in added contacts. Pure: equal arguments give the same verdict
-/// whatever the hint holds.
+/// Laws: invariant under a rigid motion of the object's frame (with its centre of mass and load, where those
+/// count) and under permutation of the contacts; verdicts are monotone in the friction and in added contacts.
+/// Pure: equal arguments give the same verdict whatever the hint holds.
 pub trait StabilityTest: Send + Sync {
     /// Whether the grasp is stable. The planner's inner loop: no allocation.
     ///
-    /// Engine guarantee: finite inputs, unit normals, at least one contact. `hint` may be left from an earlier call with a
-    /// grasp nearby. A cone that the test cannot handle is [`CallError::Unsupported`].
+    /// Engine guarantee: finite inputs, unit normals, at least one contact. `hint` may be left from an
+    /// earlier call with a grasp nearby. A cone that the test cannot handle is [`CallError::Unsupported`].
     fn test(
         &self,
         grasp: &Grasp<'_>,
@@ -123,8 +127,9 @@ pub trait StabilityTest: Send + Sync {
 
     /// The verdict with margin and certificate, for grasps that are reported.
     ///
-    /// `length` (m) scales torques where margins of different grasps are compared; `None` takes the grasp's own size.
-    /// `center_O` (m) is the point that torques are taken about; `None` takes the contacts' centroid.
+    /// `length` (m) scales torques where margins of different grasps are compared; `None` takes the grasp's
+    /// own size. `center_O` (m) is the point that torques are taken about; `None` takes the contacts'
+    /// centroid.
     fn assess(
         &self,
         grasp: &Grasp<'_>,
@@ -160,7 +165,8 @@ pub trait StabilityTest: Send + Sync {
         Criterion::Closure
     }
 
-    /// Whether grasps must say what the joints behind their contacts can do ([`Grasp::efforts`]); no unless it says so.
+    /// Whether grasps must say what the joints behind their contacts can do ([`Grasp::efforts`]); no unless
+    /// it says so.
     fn uses_efforts(&self) -> bool {
         false
     }

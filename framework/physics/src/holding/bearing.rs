@@ -4,10 +4,12 @@ use crate::force::{ContactForce, Friction};
 use nalgebra::{SMatrix, Vector4, Vector6};
 use regrasp_api::{EffortBounds, MAX_FINGER_JOINTS, Vec3, any_orthogonal};
 
-/// What one contact exerts, in N: (f_n, f_t1, f_t2, m/λ), with λ = γ/μ the friction's lever; the last is 0 where there is no torsion.
+/// What one contact exerts, in N: (f_n, f_t1, f_t2, m/λ), with λ = γ/μ the friction's lever; the last is 0
+/// where there is no torsion.
 pub type Exerted = Vector4<f64>;
 
-/// One contact that bears a part of the load: its grasp map, its cone, and the half-spaces of its joints' efforts.
+/// One contact that bears a part of the load: its grasp map, its cone, and the half-spaces of its joints'
+/// efforts.
 ///
 /// The cone is |(f_t1, f_t2, m/λ)| ≤ s μ f_n, with s the share of the friction that a search allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +55,8 @@ impl Bearing {
         start: 0.0,
     };
 
-    /// The contact at `r_O` (m) from the centre of mass with the outward unit normal `n_O`; torques count over `length` (m).
+    /// The contact at `r_O` (m) from the centre of mass with the outward unit normal `n_O`; torques count
+    /// over `length` (m).
     pub fn new(
         (r_O, n_O): (&Vec3, &Vec3),
         friction: &Friction,
@@ -113,7 +116,8 @@ impl Bearing {
         self.rows().iter().map(|row| row.dot(x).abs()).fold(0.0, f64::max)
     }
 
-    /// Room to the bounds of cone (at the share `s` of the friction), efforts and normal force; no unit, positive inside.
+    /// Room to the bounds of cone (at the share `s` of the friction), efforts and normal force; no unit,
+    /// positive inside.
     pub(crate) fn room(&self, x: &Exerted, s: f64) -> f64 {
         let cone = (s * self.mu * x[0] - x.fixed_rows::<3>(1).norm()) / self.start;
         cone.min(1.0 - self.effort_share(x)).min(1.0 - x[0] / self.most)

@@ -33,7 +33,8 @@ pub struct HeldLoad {
 /// The answer on one grasp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
-    /// Forces that hold the weight, or why there are none. A disturbance that nothing resists gives its twist.
+    /// Forces that hold the weight, or why there are none. A disturbance that nothing resists gives its
+    /// twist.
     pub balanced: Balanced,
     /// Whether the grasp holds the weight and every disturbance.
     pub holds: bool,
@@ -53,8 +54,14 @@ impl std::ops::Deref for Bearings {
 }
 
 impl HeldLoad {
-    /// The contacts of a grasp, but that of `lifted`, with a `part` of their friction; `None` where a cone is not elliptic.
-    pub fn bearings(&self, grasp: &Grasp<'_>, lifted: Option<FingerIndex>, part: f64) -> Option<Bearings> {
+    /// The contacts of a grasp, but that of `lifted`, with a part of their friction and of their torsional
+    /// friction; `None` where a cone is not elliptic.
+    pub fn bearings(
+        &self,
+        grasp: &Grasp<'_>,
+        lifted: Option<FingerIndex>,
+        (part, torsion_part): (f64, f64),
+    ) -> Option<Bearings> {
         let mut bearings = Bearings { all: [Bearing::NOTHING; MAX_FINGERS], count: 0 };
         for (i, contact) in grasp.contacts().iter().enumerate() {
             if Some(contact.finger) == lifted {
@@ -63,7 +70,7 @@ impl HeldLoad {
             let Cone::Elliptic { mu, gamma } = contact.cone else { return None };
             let place = (&(contact.p_OC - self.p_OCm), &contact.n_O);
             let efforts = grasp.efforts(i).copied().unwrap_or_default();
-            let friction = Friction { mu: mu * part, gamma: gamma * part };
+            let friction = Friction { mu: mu * part, gamma: gamma * torsion_part };
             bearings.all[bearings.count] = Bearing::new(place, &friction, &efforts, &self.press, self.length);
             bearings.count += 1;
         }
@@ -75,7 +82,8 @@ impl HeldLoad {
         stacked(&(g_O * -self.mass), &Vec3::zeros())
     }
 
-    /// Whether the contacts hold the load, all friction counted; `factor` multiplies the disturbances. The hint saves work, and decides nothing.
+    /// Whether the contacts hold the load, all friction counted; `factor` multiplies the disturbances. The
+    /// hint saves work, and decides nothing.
     pub fn held(&self, bearings: &[Bearing], g_O: &Vec3, factor: f64, hint: &mut Hint) -> Answer {
         let search = Search { bearings, share: 1.0 };
         if bearings.len() < 2 || !has_full_rank(bearings) {

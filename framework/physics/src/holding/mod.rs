@@ -1,4 +1,5 @@
-//! Forces that hold a load inside friction cones and within the joints' efforts: which there are, and how little friction they need.
+//! Forces that hold a load inside friction cones and within the joints' efforts: which there are, and how
+//! little friction they need.
 
 mod bearing;
 mod load;

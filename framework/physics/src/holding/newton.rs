@@ -1,4 +1,5 @@
-//! Forces that balance a load inside cones and efforts: Newton's method to their analytic centre, or a proof that there are none.
+//! Forces that balance a load inside cones and efforts: Newton's method to their analytic centre, or a proof
+//! that there are none.
 
 use super::bearing::{Bearing, Exerted};
 use nalgebra::{Cholesky, Matrix4, Matrix6, Vector4, Vector6};
@@ -27,8 +28,8 @@ pub type Forces = [Exerted; MAX_FINGERS];
 pub enum Balanced {
     /// These do, strictly inside all bounds.
     Yes(Forces),
-    /// None do. On this twist of the object, the joints giving way as they can, the load has more power than the efforts at their limits:
-    /// force part, and torque part over the length.
+    /// None do. On this twist of the object, the joints giving way as they can, the load has more power than
+    /// the efforts at their limits: force part, and torque part over the length.
     No(Vector6<f64>),
     /// Neither was proved.
     Unknown,
@@ -73,7 +74,8 @@ struct Step {
     /// The largest multiple of the change that stays inside.
     reach: f64,
     decrement: f64,
-    /// The most power that forces within all bounds have on the multiplier; infinite where this step proves no bound.
+    /// The most power that forces within all bounds have on the multiplier; infinite where this step proves
+    /// no bound.
     power: f64,
 }
 
@@ -92,7 +94,8 @@ impl Search<'_> {
         self.run(*from, wanted, f64::INFINITY)
     }
 
-    /// Looks for the analytic centre of the forces whose wrench is `wanted`: unique, and continuous in all data.
+    /// Looks for the analytic centre of the forces whose wrench is `wanted`: unique, and continuous in all
+    /// data.
     pub fn centre(&self, from: &Forces, wanted: &Vector6<f64>) -> Balanced {
         self.run(*from, wanted, CENTRED)
     }
@@ -124,9 +127,11 @@ impl Search<'_> {
         wrenches.fold(*wanted, |left, wrench| left - wrench)
     }
 
-    /// Newton's method from forces inside that need not balance (S. Boyd, L. Vandenberghe, "Convex Optimization", 2004, section 10.3).
+    /// Newton's method from forces inside that need not balance (S. Boyd, L. Vandenberghe, "Convex
+    /// Optimization", 2004, section 10.3).
     ///
-    /// The Hessian is one block for each contact, since a finger's joints see its own contact alone: each step is one 6×6 system.
+    /// The Hessian is one block for each contact, since a finger's joints see its own contact alone: each
+    /// step is one 6×6 system.
     fn run(&self, mut forces: Forces, wanted: &Vector6<f64>, precision: f64) -> Balanced {
         if self.bearings.is_empty() {
             return if *wanted == Vector6::zeros() { Balanced::Yes(forces) } else { Balanced::Unknown };
@@ -162,10 +167,11 @@ impl Search<'_> {
         t
     }
 
-    /// Brings forces that a short step left near a bound back to the centre of those with the same wrench; a proof where one is met.
+    /// Brings forces that a short step left near a bound back to the centre of those with the same wrench; a
+    /// proof where one is met.
     ///
-    /// With it the search follows the path of centres from the wrench of the start to the one that is wanted: where that is out of reach, the path
-    /// ends at the boundary, and the multiplier there is a proof.
+    /// With it the search follows the path of centres from the wrench of the start to the one that is wanted:
+    /// where that is out of reach, the path ends at the boundary, and the multiplier there is a proof.
     fn recentre(&self, forces: &mut Forces, wanted: &Vector6<f64>) -> Option<Vector6<f64>> {
         for _ in 0..RECENTRING {
             let here = -self.residual(forces, &Vector6::zeros());
@@ -253,8 +259,9 @@ impl Barrier {
 
     /// The most power that this contact's forces can have on the step's multiplier, by weak duality.
     ///
-    /// What the contact sees of the multiplier is exactly a part v in the cone's coordinates and parts λ_j along the efforts' rows. Where v is
-    /// in the polar of the cone it has no power, and the rest has at most Σ |λ_j| within the efforts.
+    /// What the contact sees of the multiplier is exactly a part v in the cone's coordinates and parts λ_j
+    /// along the efforts' rows. Where v is in the polar of the cone it has no power, and the rest has at most
+    /// Σ |λ_j| within the efforts.
     fn power(&self, bearing: &Bearing, share: f64, x: &Exerted, d: &Exerted) -> f64 {
         let v = self.cone_gradient + self.cone_hessian * d;
         let tangential = v.fixed_rows::<3>(1).norm();

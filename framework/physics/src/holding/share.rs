@@ -13,7 +13,8 @@ pub(crate) const LARGEST: f64 = 8.0;
 /// Shares below this are as good as none.
 pub(crate) const LEAST: f64 = 0.02;
 
-/// The smallest share of the friction at which some forces balance a load within the efforts, and such forces.
+/// The smallest share of the friction at which some forces balance a load within the efforts, and such
+/// forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smallest {
     /// Forces that need no more than this share are known ...
@@ -29,9 +30,10 @@ pub(crate) fn share_of(bearings: &[Bearing], forces: &Forces) -> f64 {
 
 /// Looks for the smallest share, beginning at `from`; `None` where none up to eight times the friction holds.
 ///
-/// For each share it is a question of second-order cones and half-spaces, answered by Newton's method with a proof either way; every yes
-/// brings the bound down to what its forces need, every no halves what is left (S. Boyd, B. Wegbreit, "Fast computation of optimal
-/// contact forces", IEEE T-RO 2007, bisect over bounds in the same manner).
+/// For each share it is a question of second-order cones and half-spaces, answered by Newton's method with a
+/// proof either way; every yes brings the bound down to what its forces need, every no halves what is left
+/// (S. Boyd, B. Wegbreit, "Fast computation of optimal contact forces", IEEE T-RO 2007, bisect over bounds in
+/// the same manner).
 pub fn smallest_share(bearings: &[Bearing], wanted: &Vector6<f64>, from: f64) -> Option<Smallest> {
     let find = |share: f64| {
         let search = Search { bearings, share };

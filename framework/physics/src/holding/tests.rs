@@ -29,7 +29,8 @@ fn random_grasp(random: &mut Random, count: usize, gamma: f64) -> (Vec<Bearing>,
     (bearings, stacked(&weight, &Vec3::zeros()))
 }
 
-/// The largest t ≤ 1 (N) with s μ f_n - |(f_t, m/λ)| ≥ t and 1 - |a·f| ≥ t for forces that balance; its sign is the verdict.
+/// The largest t ≤ 1 (N) with s μ f_n - |(f_t, m/λ)| ≥ t and 1 - |a·f| ≥ t for forces that balance; its sign
+/// is the verdict.
 fn conic_margin(bearings: &[Bearing], wanted: &Vector6<f64>, share: f64) -> f64 {
     let (n, mut entries, mut b): (usize, Vec<(usize, usize, f64)>, Vec<f64>) =
         (4 * bearings.len() + 1, vec![], vec![]);
@@ -75,14 +76,16 @@ fn conic_margin(bearings: &[Bearing], wanted: &Vector6<f64>, share: f64) -> f64 
     solver.solution.x[n - 1]
 }
 
-/// How much a twist is worth as a proof: the load's power on it, less the most that any allowed forces have, found by the conic program's
-/// cousin: forces that have the most power, contact by contact, by brute force over the cone's rim and the efforts' bounds.
+/// How much a twist is worth as a proof: the load's power on it, less the most that any allowed forces have,
+/// found by the conic program's cousin: forces that have the most power, contact by contact, by brute force
+/// over the cone's rim and the efforts' bounds.
 fn refutes(bearings: &[Bearing], wanted: &Vector6<f64>, share: f64, twist: &Vector6<f64>) -> bool {
     let most: f64 = bearings.iter().map(|bearing| most_power(bearing, share, twist)).sum();
     wanted.dot(twist) > most * (1.0 + 1e-3) - 1e-12
 }
 
-/// The most power of one contact without torsion on a twist, from below: along rays of the cone as far as the efforts allow.
+/// The most power of one contact without torsion on a twist, from below: along rays of the cone as far as the
+/// efforts allow.
 fn most_power(bearing: &Bearing, share: f64, twist: &Vector6<f64>) -> f64 {
     let seen = bearing.map.transpose() * twist;
     let ray = |turn: f64, part: f64| {
