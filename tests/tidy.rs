@@ -34,6 +34,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "regrasp-formats",
             "regrasp-hands",
             "regrasp-host",
+            "regrasp-physics",
             "regrasp-plan",
             "regrasp-planner",
             "regrasp-verify",
