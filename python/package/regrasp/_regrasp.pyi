@@ -1,7 +1,7 @@
 """The native half of the package; private, but for the classes that the package exports."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, Literal
+from typing import Any, Literal, final
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +10,7 @@ _Array = npt.NDArray[np.float64]
 _Triple = Sequence[float] | _Array
 _Matrix = Sequence[Sequence[float]] | _Array
 
+@final
 class Contact:
     """Where a fingertip touches, or could touch, the object."""
 
@@ -26,6 +27,7 @@ class Contact:
     def tip_center(self, radius: float) -> _Array:
         """The centre of a fingertip of this radius (m) that touches here, in O."""
 
+@final
 class Grasp:
     """Contacts that hold the object, 1 to 8, each with an elliptic cone."""
 
@@ -35,7 +37,7 @@ class Grasp:
         normals: Sequence[_Triple] | _Array,
         friction: float = 0.8,
         torsion: float = 0.0,
-        gravity: _Triple = (0.0, 0.0, 0.0),
+        gravity: _Triple = ...,
     ) -> Grasp: ...
     @property
     def fingers(self) -> list[int]:
@@ -57,6 +59,7 @@ class Grasp:
         """Acceleration of gravity in O (m/s²), (3,)."""
     def __len__(self) -> int: ...
 
+@final
 class Configuration:
     """The object's pose, the joints of every finger, and which fingers touch where."""
 
@@ -73,6 +76,7 @@ class Configuration:
     def contacts(self) -> list[Contact | None]:
         """The contact of each finger; None where it does not hold."""
 
+@final
 class Context:
     """The random stream and the counts of one call: the only source of randomness that a plugin may use."""
 
@@ -92,6 +96,7 @@ class Context:
     def interrupted(self) -> bool:
         """Whether the run is to stop: long loops of a plugin look at it."""
 
+@final
 class PoseRequest:
     """Where the object's pose comes from in a sample."""
 
@@ -106,6 +111,7 @@ class PoseRequest:
     @property
     def angle(self) -> float: ...
 
+@final
 class Target:
     """Where a local planner is to go."""
 
@@ -127,6 +133,7 @@ class Target:
     def joints(self) -> _Array | None:
         """Its joints at the end."""
 
+@final
 class Task:
     """Services and the other roles, lent for the time of one call."""
 
@@ -170,6 +177,7 @@ class Task:
         """Why the configuration may not become a node; None where it may."""
     def at_rest(self, pose: _Matrix) -> Configuration: ...
 
+@final
 class Graph:
     """The manipulation graph, lent for the time of one call."""
 
@@ -199,6 +207,7 @@ class Graph:
     def configuration(self, node: int) -> Configuration: ...
     def shortest_path(self) -> list[int]: ...
 
+@final
 class Plan:
     @staticmethod
     def read(path: str) -> Plan: ...
@@ -213,12 +222,14 @@ class Plan:
     def verify(self) -> str: ...
     def page(self) -> str: ...
 
+@final
 class Solved:
     @property
     def plan(self) -> Plan | None: ...
     @property
     def summary(self) -> str: ...
 
+@final
 class Scenario:
     @staticmethod
     def load(name: str) -> Scenario: ...
@@ -226,6 +237,7 @@ class Scenario:
     def parse(text: str, file: str, folder: str) -> Scenario: ...
     def describe(self) -> str: ...
 
+@final
 class Hand:
     @staticmethod
     def load(tree: str, folder: str) -> Hand: ...
@@ -234,6 +246,7 @@ class Hand:
     def jacobian(self, finger: int, joints: _Array) -> _Array: ...
     def ik(self, finger: int, centers: _Array, near: _Array) -> _Array: ...
 
+@final
 class Bench:
     def __new__(cls, scenario: Scenario, changes: dict[str, Any]) -> Bench: ...
     def sample_contacts(self, count: int, seed: int) -> dict[str, Any]: ...
