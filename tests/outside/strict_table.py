@@ -18,6 +18,8 @@ COLUMNS = [
     ("GS_n components", "grasp_components"),
     ("paths in GS_n used", "used_grasp_edges"),
     ("transfer edges used", "used_transfer_edges"),
+    ("decompositions", "decompositions"),
+    ("failed", "failed_decompositions"),
     ("stability tests", "stability-test.calls"),
     ("collision tests", "collision_tests"),
 ]
