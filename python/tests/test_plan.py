@@ -170,3 +170,37 @@ def test_planning_is_logged(caplog: pytest.LogCaptureFixture) -> None:
     with caplog.at_level(logging.INFO, logger="regrasp"):
         rg.plan("sphere", seed=1)
     assert "planned in" in caplog.text
+
+
+def test_a_plan_that_holds_gives_forces_and_efforts() -> None:
+    task = rg.Scenario(
+        object=rg.Sphere(0.03, mass=0.05),
+        start=rg.pose(z=0.085),
+        goals=[rg.pose(z=0.085, axis="z", angle_deg=40)],
+        hold=rg.Hold(friction_factor=0.8),
+    )
+    plan = task.plan(seed=1)
+    assert plan.forces is not None and plan.efforts is not None
+    holding = plan.contacts.holding
+    assert (~np.isnan(plan.forces[:, :, 0]) == holding).all()
+    turned = np.einsum("nij,nj->ni", plan.object_poses[:, :3, :3], np.nansum(plan.forces, axis=1))
+    assert np.abs(turned - [0, 0, 0.05 * 9.81]).max() < 0.05 * 0.05 * 9.81
+    limits = np.concatenate([finger.effort for finger in rg.Hand.built_in("four-finger").fingers])
+    assert plan.efforts.shape == plan.joints.shape and (np.abs(plan.efforts) <= limits + 1e-9).all()
+    free = np.repeat(~holding, 3, axis=1)
+    assert (plan.efforts[free] == 0).all()
+    assert rg.plan("sphere", seed=1).forces is None
+
+
+def test_velocities_are_those_of_the_joints() -> None:
+    plan = rg.plan("sphere", seed=1)
+    assert plan.velocities is not None and plan.velocities.shape == plan.joints.shape
+    assert (plan.velocities[[0, -1]] == 0).all()
+
+
+def test_a_plan_is_exported(tmp_path) -> None:
+    plan = rg.plan("sphere", seed=1)
+    files = plan.export("csv", tmp_path / "new")
+    assert files and all(file.stat().st_size > 0 for file in files)
+    with pytest.raises(rg.ArgumentError, match="urdf"):
+        plan.export("stl", tmp_path)
