@@ -33,6 +33,8 @@ pub struct Watch {
     begin: Instant,
     limit: Option<Duration>,
     cancelled: AtomicBool,
+    /// Nobody waits for the run any more.
+    abandoned: AtomicBool,
     stage: Mutex<Option<Stage>>,
 }
 
@@ -43,6 +45,7 @@ impl Watch {
             begin: Instant::now(),
             limit: limit.map(Duration::from_secs_f64),
             cancelled: AtomicBool::new(false),
+            abandoned: AtomicBool::new(false),
             stage: Mutex::new(None),
         })
     }
@@ -50,6 +53,11 @@ impl Watch {
     /// Asks the run to stop.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the run was asked to stop; a limit that is over does not count.
+    pub fn cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
     }
 
     /// How far the run is, where that changed since it was last asked.
@@ -109,9 +117,10 @@ pub fn beside<T: Send + 'static>(
     job: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
     let (sender, mut receiver) = channel();
+    let theirs = Arc::clone(watch);
     std::thread::Builder::new().name("regrasp".into()).spawn(move || {
-        // Attached once, the thread is known to Python: plugins are called at a third of what it takes else.
-        let answer = Python::attach(|py| py.detach(|| catch_unwind(AssertUnwindSafe(job))));
+        // Attached once, the thread is known to Python, and a call of a plugin need not make it known again.
+        let answer = Python::attach(|py| py.detach(|| unless_abandoned(&theirs, job)));
         // Nobody may wait for it any more.
         let _ = sender.send(answer);
     })?;
@@ -127,10 +136,21 @@ pub fn beside<T: Send + 'static>(
         let stop = py.check_signals().and_then(|()| tell(watch, callback));
         if let Err(exception) = stop {
             watch.cancel();
-            drop(wait(py, receiver, PATIENCE));
+            let (_, answer) = wait(py, receiver, PATIENCE);
+            watch.abandoned.store(answer.is_err(), Ordering::Relaxed);
             return Err(exception);
         }
     }
+}
+
+/// The answer of `job`. A thread that nobody waits for any more never comes back from here: the interpreter may be
+/// gone by then, and a thread that asks for it is ended through frames that cannot be.
+fn unless_abandoned<T>(watch: &Watch, job: impl FnOnce() -> T) -> std::thread::Result<T> {
+    let answer = catch_unwind(AssertUnwindSafe(job));
+    while watch.abandoned.load(Ordering::Relaxed) {
+        std::thread::park();
+    }
+    answer
 }
 
 type Answer<T> = Result<std::thread::Result<T>, RecvTimeoutError>;

@@ -18,7 +18,7 @@ impl Plugin {
         &self,
         call: impl for<'py> FnOnce(Python<'py>, &Bound<'py, PyAny>) -> PyResult<R>,
     ) -> Result<R, CallError> {
-        if self.stash.interrupted() {
+        if self.stash.cancelled() {
             return Err(CallError::Interrupted);
         }
         Python::attach(|py| call(py, self.object.bind(py)).map_err(|e| self.stash.fault(py, self.id, e)))
@@ -30,6 +30,10 @@ impl Plugin {
         call: impl for<'py> FnOnce(Python<'py>, &Bound<'py, PyAny>) -> PyResult<R>,
         harmless: impl FnOnce() -> R,
     ) -> R {
+        if self.stash.cancelled() {
+            api::report_fault(CallError::Interrupted);
+            return harmless();
+        }
         let answer =
             Python::attach(|py| call(py, self.object.bind(py)).map_err(|e| self.stash.fault(py, self.id, e)));
         answer.unwrap_or_else(|fault| {

@@ -38,6 +38,11 @@ impl Stash {
         self.watch.as_ref().is_some_and(|watch| watch.interrupted())
     }
 
+    /// Whether the caller of the run is gone: then Python may be, too, and no plugin is called any more.
+    pub fn cancelled(&self) -> bool {
+        self.watch.as_ref().is_some_and(|watch| watch.cancelled())
+    }
+
     /// Keeps an exception, and gives the text that leads back to it.
     pub fn keep(&self, py: Python<'_>, exception: PyErr) -> String {
         let text = exception.value(py).to_string();
