@@ -75,7 +75,12 @@ impl Run<'_> {
         let mut finder = Finder { kind, leg, X_HO, calls: 0 };
         let mut found = Vec::new();
         for _ in 0..count {
-            found.extend(finder.next(&self.session, &self.task, &self.choices, &mut self.tally)?);
+            match finder.next(&self.session, &self.task, &self.choices, &mut self.tally)? {
+                Some(q) => found.push(q),
+                // There is a grasp, and others are rare.
+                None if has_one => break,
+                None => {}
+            }
         }
         if found.is_empty() && !has_one {
             found = self.weaker_grasps(&mut finder, count)?;
