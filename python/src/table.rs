@@ -44,11 +44,11 @@ pub struct Table {
     /// For each finger point in O, outward normal in O, point in F: nine a finger; NaN where it does not
     /// hold.
     pub contact: Vec<f64>,
-    /// Joint velocities as `q`; empty in plans without.
+    /// Joint velocities as `q`, NaN in states without; empty in plans without.
     pub velocity: Vec<f64>,
-    /// For each finger the force on the object in O (N); NaN where free; empty in plans without.
+    /// For each finger the force on the object in O (N); NaN where free or unknown; empty in plans without.
     pub force: Vec<f64>,
-    /// What the joints must give for these forces alone (N·m; N), as `q`; empty in plans without.
+    /// What the joints must give for these forces alone (N·m; N), as `q`, NaN where unknown; empty in plans without.
     pub effort: Vec<f64>,
 }
 
@@ -60,17 +60,20 @@ pub fn table(plan: &Plan) -> Result<Table, String> {
     let mut table = Table { fingers, joints, ..Table::default() };
     for (row, state) in states(plan).enumerate() {
         table.push(state);
-        let whole = |column: &[f64], width| column.is_empty() || column.len() == width * table.states;
         let fits = table.q.len() == joints * table.states
             && state.contacts.len() == fingers
-            && whole(&table.velocity, joints)
-            && whole(&table.force, 3 * fingers);
+            && table.velocity.len() == joints * table.states
+            && table.force.len() == 3 * fingers * table.states;
         if !fits {
             return Err(format!("state {row} has other fingers or joints than the first"));
         }
     }
-    if !table.force.is_empty() {
-        table.effort = efforts(plan)?;
+    if states(plan).all(|state| state.velocities.is_none()) {
+        table.velocity.clear();
+    }
+    match states(plan).any(|state| state.forces.is_some()) {
+        true => table.effort = efforts(plan)?,
+        false => table.force.clear(),
     }
     Ok(table)
 }
@@ -96,6 +99,9 @@ fn finger_efforts(hand: &ChainHand, state: &StateRecord, index: usize) -> Vec<f6
     let joints = FingerJoints::from_slice(&state.joints[index]);
     let force = state.forces.as_ref().and_then(|forces| forces.get(index).copied().flatten());
     let contact = state.contacts.get(index).and_then(Option::as_ref);
+    if state.forces.is_none() {
+        return vec![f64::NAN; joints.len()];
+    }
     let (Some(f_O), Some(contact)) = (force, contact) else { return vec![0.0; joints.len()] };
     let [w, x, y, z] = state.object.orientation;
     let f_H = Rotation::from_quaternion(nalgebra::Quaternion::new(w, x, y, z)) * Vec3::from(f_O);
@@ -111,10 +117,14 @@ impl Table {
         self.time.push(state.time);
         self.pose.extend(state.object.position.iter().chain(&state.object.orientation));
         self.q.extend(state.joints.iter().flatten());
-        self.velocity.extend(state.velocities.iter().flatten().flatten());
-        let no_force = [f64::NAN; 3];
-        let forces = state.forces.iter().flatten().map(|force| force.unwrap_or(no_force));
-        self.force.extend(forces.flatten());
+        match &state.velocities {
+            Some(velocities) => self.velocity.extend(velocities.iter().flatten()),
+            None => self.velocity.extend(vec![f64::NAN; self.joints]),
+        }
+        match &state.forces {
+            Some(forces) => self.force.extend(forces.iter().flat_map(|force| force.unwrap_or([f64::NAN; 3]))),
+            None => self.force.extend(vec![f64::NAN; 3 * self.fingers]),
+        }
         for contact in &state.contacts {
             match contact {
                 Some(contact) => {

@@ -182,20 +182,49 @@ def test_a_plan_that_holds_gives_forces_and_efforts() -> None:
     plan = task.plan(seed=1)
     assert plan.forces is not None and plan.efforts is not None
     holding = plan.contacts.holding
-    assert (~np.isnan(plan.forces[:, :, 0]) == holding).all()
+    assert holding[~np.isnan(plan.forces[:, :, 0])].all()
     turned = np.einsum("nij,nj->ni", plan.object_poses[:, :3, :3], np.nansum(plan.forces, axis=1))
     assert np.abs(turned - [0, 0, 0.05 * 9.81]).max() < 0.05 * 0.05 * 9.81
     limits = np.concatenate([finger.effort for finger in rg.Hand.built_in("four-finger").fingers])
     assert plan.efforts.shape == plan.joints.shape and (np.abs(plan.efforts) <= limits + 1e-9).all()
     free = np.repeat(~holding, 3, axis=1)
     assert (plan.efforts[free] == 0).all()
-    assert rg.plan("sphere", seed=1).forces is None
+
+
+def test_plans_without_forces_say_so() -> None:
+    tree = rg.plan("sphere", seed=1).to_dict()
+    for segment in tree["segments"]:
+        for state in segment["states"]:
+            state.pop("forces", None)
+            state.pop("velocities", None)
+    bare = rg.Plan.from_dict(tree)
+    assert bare.forces is None and bare.efforts is None and bare.velocities is None
+    tree["segments"][0]["states"][0]["forces"] = [[1.0, 0.0, 0.0], None, None, None]
+    some = rg.Plan.from_dict(tree)
+    assert some.forces is not None and some.efforts is not None
+    assert np.isnan(some.forces[0, 1:]).all() and np.isnan(some.forces[1:]).all()
+    assert (some.efforts[0, 3:] == 0).all() and np.isnan(some.efforts[1:]).all()
+    X_HO, contacts = some.object_poses[0], some.contacts
+    hand, force = rg.Hand.built_in("four-finger"), some.object_poses[0][:3, 0]
+    moved = contacts.points_O[0, 0] @ X_HO[:3, :3].T + X_HO[:3, 3]
+    tip = hand.fk(0, some.joints[0, :3])
+    step, work = 1e-6, []
+    for joint in range(3):
+        q = some.joints[0, :3].copy()
+        q[joint] += step
+        # The tip's own part of the work; the turn about it adds the moment of the contact's lever.
+        work.append(float((hand.fk(0, q) - tip) @ force) / step)
+    lever = float(np.linalg.norm(np.cross(moved - tip, force)))
+    assert np.abs(some.efforts[0, :3] - work).max() <= lever + 1e-4
 
 
 def test_velocities_are_those_of_the_joints() -> None:
-    plan = rg.plan("sphere", seed=1)
-    assert plan.velocities is not None and plan.velocities.shape == plan.joints.shape
-    assert (plan.velocities[[0, -1]] == 0).all()
+    tree = rg.plan("sphere", seed=1).to_dict()
+    states = [state for segment in tree["segments"] for state in segment["states"]]
+    for state in states:
+        state["velocities"] = [[0.5 * q for q in finger] for finger in state["joints"]]
+    plan = rg.Plan.from_dict(tree)
+    assert plan.velocities is not None and (plan.velocities == 0.5 * plan.joints).all()
 
 
 def test_a_plan_is_exported(tmp_path) -> None:

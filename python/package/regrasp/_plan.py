@@ -213,7 +213,7 @@ class Plan:
 
     @property
     def forces(self) -> Array | None:
-        """Forces of the fingertips on the object, in O (N), (S, F, 3): NaN where free; None without."""
+        """Forces of the fingertips on the object, in O (N), (S, F, 3): NaN where free or unknown."""
         return self._arrays.get("force")
 
     @property
