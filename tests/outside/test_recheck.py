@@ -91,7 +91,7 @@ def test_the_exported_urdf_moves_as_the_plan_s_hand_does(name, regrasp, tmp_path
 
 
 def test_every_planted_fault_is_seen(regrasp, tmp_path):
-    regrasp("plan", "cube-free", "-o", "plan.json", cwd=tmp_path)
+    regrasp("plan", "sphere-tilt", "-o", "plan.json", cwd=tmp_path)
     plan = json.loads((tmp_path / "plan.json").read_text())
     assert len(mutate.FAULTS) >= 20 and Recheck(plan).run() == {}
     assert mutate.unseen(plan) == []
