@@ -23,6 +23,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-verify", &["regrasp-api", "regrasp-plan"]),
     ("regrasp-view", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
     ("regrasp-audit", &["regrasp-api"]),
+    ("regrasp-example-plugins", &["regrasp-api"]),
     ("regrasp-conformance", &["regrasp-api", "regrasp-audit", "regrasp-world"]),
     ("regrasp-export", &["regrasp-api", "regrasp-physics", "regrasp-plan", "regrasp-world"]),
     ("regrasp-physics", &["regrasp-api", "regrasp-world"]),
@@ -31,6 +32,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "regrasp-abi",
             "regrasp-api",
+            "regrasp-audit",
             "regrasp-formats",
             "regrasp-hands",
             "regrasp-host",

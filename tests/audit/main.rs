@@ -1,4 +1,5 @@
-//! An audit of a real problem catches realistic mistakes, six and more of each role, and leaves what is right alone.
+//! An audit of a real problem catches realistic mistakes, six and more of each role, and leaves what is right
+//! alone.
 #![allow(missing_docs)]
 
 mod contact_models;

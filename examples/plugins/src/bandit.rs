@@ -1,4 +1,5 @@
-//! A strategy that learns: three ways to go on, each drawn the more often the more it has achieved for what it cost.
+//! A strategy that learns: three ways to go on, each drawn the more often the more it has achieved for what
+//! it cost.
 
 use regrasp_api::{
     Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, NoSettings, NodeId,

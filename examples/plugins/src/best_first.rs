@@ -1,4 +1,5 @@
-//! A best-first search over SE(3): goes on from the node whose pose lies nearest to a goal's, and widens where nothing comes of it.
+//! A best-first search over SE(3): goes on from the node whose pose lies nearest to a goal's, and widens
+//! where nothing comes of it.
 
 use regrasp_api::{
     Action, Build, CallError, Context, EdgeKind, Effect, Entry, GraphStrategy, GraphView, Link, NoSettings,

@@ -1,4 +1,5 @@
-//! A contact model with a grain: wood, brushed metal, a woven cover. Friction along the grain differs from friction across it.
+//! A contact model with a grain: wood, brushed metal, a woven cover. Friction along the grain differs from
+//! friction across it.
 
 use regrasp_api::{
     Build, Cone, Contact, ContactModel, Entry, FingerIndex, Settings, Slot, Vec3, check_settings, inventory,

@@ -1,4 +1,5 @@
-//! A transfer planner that wraps the default: a roll that ends with a joint close to its limit is refused, as the next one would stop there.
+//! A transfer planner that wraps the default: a roll that ends with a joint close to its limit is refused, as
+//! the next one would stop there.
 
 use regrasp_api::{
     Build, CallError, Configuration, Context, Entry, LocalPlanner, Path, Reached, Settings, Slot, Target,

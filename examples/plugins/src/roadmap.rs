@@ -1,4 +1,5 @@
-//! A regrasp planner: a probabilistic roadmap over the joints of the finger that moves, the object and the other fingers resting.
+//! A regrasp planner: a probabilistic roadmap over the joints of the finger that moves, the object and the
+//! other fingers resting.
 
 use regrasp_api::{
     Build, CallError, Configuration, Contact, Context, Entry, FingerIndex, FingerJoints, JointKind,
@@ -64,7 +65,8 @@ impl Regrasp<'_> {
         posture
     }
 
-    /// The postures from `a`, left out, to `b` over the roadmap: Dijkstra's algorithm, edges checked when they are wanted.
+    /// The postures from `a`, left out, to `b` over the roadmap: Dijkstra's algorithm, edges checked when
+    /// they are wanted.
     fn cross(
         &self,
         a: FingerJoints,

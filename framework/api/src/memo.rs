@@ -5,8 +5,10 @@ use std::sync::{Mutex, PoisonError};
 
 /// Results by key, shared by the threads of a search: for roadmaps, factorisations, cones.
 ///
-/// It changes what a call costs and never what it answers, if the result is a pure function of the key. That is the plugin's duty; the laws
-/// of purity and an audit hold it to it. Once `most` results are kept no more are: which ones are depends on the threads, so the answers may not.
+/// It changes what a call costs and never what it answers, if the result is a pure function of the key. That
+/// is the plugin's duty; the laws
+/// of purity and an audit hold it to it. Once `most` results are kept no more are: which ones are depends on
+/// the threads, so the answers may not.
 #[derive(Debug)]
 pub struct Memo<K, V> {
     most: usize,
@@ -19,7 +21,8 @@ impl<K: Ord, V: Clone> Memo<K, V> {
         Self { most, known: Mutex::new(BTreeMap::new()) }
     }
 
-    /// The result for `key`, worked out by `make` where it is not known; a `make` that fails is tried again the next time.
+    /// The result for `key`, worked out by `make` where it is not known; a `make` that fails is tried again
+    /// the next time.
     ///
     /// Two threads that miss at a time both work it out, alike.
     pub fn get<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<V, E> {

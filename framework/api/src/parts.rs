@@ -44,8 +44,10 @@ pub type Built<T> = Result<Box<T>, BuildError>;
 
 /// Builds other plugins, for one that wraps them.
 ///
-/// `id` is a plugin's id, with or without its role, and `None` the one that fills the slot by default; `settings` is JSON text, empty for the
-/// defaults. A wrapper that hands a call on leaves its counting ([`crate::Context::count_call`], [`crate::Context::reject`]) to the plugin
+/// `id` is a plugin's id, with or without its role, and `None` the one that fills the slot by default;
+/// `settings` is JSON text, empty for the
+/// defaults. A wrapper that hands a call on leaves its counting ([`crate::Context::count_call`],
+/// [`crate::Context::reject`]) to the plugin
 /// that it wraps.
 pub trait Shelf {
     /// A contact model.

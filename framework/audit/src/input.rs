@@ -50,7 +50,8 @@ pub(crate) fn grasp(grasp: &Grasp<'_>) -> Value {
             "cone": cone(&contact.cone),
         })
     };
-    json!({ "contacts": grasp.contacts().iter().map(contact).collect::<Vec<_>>(), "gravity_O": vector(&grasp.g_O) })
+    let contacts: Vec<_> = grasp.contacts().iter().map(contact).collect();
+    json!({ "contacts": contacts, "gravity_O": vector(&grasp.g_O) })
 }
 
 pub(crate) fn request(request: &PoseRequest<'_>) -> Value {

@@ -20,7 +20,8 @@ pub struct AuditCase {
 }
 
 impl Setup<'_> {
-    /// Plans and verifies as [`Setup::run`] does, every call of a plugin under audit; the first breach of a law ends the run.
+    /// Plans and verifies as [`Setup::run`] does, every call of a plugin under audit; the first breach of a
+    /// law ends the run.
     ///
     /// The plan is that of a run without audit. It takes several times as long.
     pub fn run_audited(&self, options: &RunOptions<'_>) -> (Result<Run, RunError>, Option<AuditCase>) {

@@ -33,7 +33,8 @@ impl Cones {
         }
     }
 
-    /// The cones one by one, where they do not share an elliptic one; each state then gets the numbers of its own.
+    /// The cones one by one, where they do not share an elliptic one; each state then gets the numbers of its
+    /// own.
     pub fn record(self, segments: &mut [SegmentRecord]) -> Vec<ConeRecord> {
         if self.shared().is_some() {
             return Vec::new();

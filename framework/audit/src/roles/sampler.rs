@@ -39,14 +39,26 @@ impl ClosedChainSampler for Audited<'_, dyn ClosedChainSampler + '_> {
             "sample",
             context,
             |sampler, context| sampler.sample(task, pose, holding, context),
-            |context| json!({ "pose": input::request(&pose), "holding": input::fingers(holding), "random": input::random(context) }),
+            |context| {
+                json!({
+                    "pose": input::request(&pose),
+                    "holding": input::fingers(holding),
+                    "random": input::random(context),
+                })
+            },
             |_, found, context| {
                 let Some(q) = found else { return refusals_counted(context) };
                 laws::chain_kept(&self.chain(task), q, holding)?;
                 laws::pose_kept(task, &pose, q)?;
                 match task.admissible.admit(task, q, &mut context.twin()) {
-                    Ok(Some(reason)) => laws::broken("sample-admissible", format!("refused for \
-                        `{}`", reason.name())),
+                    Ok(Some(reason)) => laws::broken(
+                        "sample-admissible",
+                        format!(
+                            "refused for \
+                        `{}`",
+                            reason.name()
+                        ),
+                    ),
                     _ => Ok(()),
                 }
             },

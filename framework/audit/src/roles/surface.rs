@@ -87,7 +87,13 @@ impl SurfaceParam for Audited<'_, dyn SurfaceParam + '_> {
         self.value(
             "walk",
             |surface| surface.walk(from, direction_O, distance),
-            || json!({ "from": input::contact(from), "direction_O": input::vector(direction_O), "distance": distance }),
+            || {
+                json!({
+                    "from": input::contact(from),
+                    "direction_O": input::vector(direction_O),
+                    "distance": distance,
+                })
+            },
             |surface, found| {
                 alike(found, &surface.walk(from, direction_O, distance))?;
                 laws::walk_kept(&self.ground(), from, distance, found)

@@ -6,7 +6,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// The name of the list of begun runs in a study's folder; it is there only while runs are made, or after a process that came to no end.
+/// The name of the list of begun runs in a study's folder; it is there only while runs are made, or after a
+/// process that came to no end.
 pub const BEGUN: &str = "begun.txt";
 
 /// The open list.
