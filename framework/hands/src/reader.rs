@@ -239,7 +239,8 @@ impl Reader<'_> {
             ref each => Some(each[finger]),
         };
         let tip = Tip::new(X_LTip, offset, (&own, &all), radius, has_own_link);
-        let tip = if is_fitted && offset.is_none() { tip.fitted(end, radius) } else { tip };
+        let tip =
+            if is_fitted && offset.is_none() { tip.fitted(end, radius, &mut self.report.notes) } else { tip };
         let name = self.finger_name(chain);
         let beside = if tip.is_ball {
             let behind = pieces(&mut last().filter(|part| part.link != chain.tip));
@@ -276,7 +277,7 @@ impl Reader<'_> {
             let tip = owned.iter().find(|part| part.owner == last && part.link == chain.tip);
             let frame = tip.map_or(Vec3::zeros(), |part| part.X_BL.translation.vector);
             let outward = tip::outward(&frame, &pieces);
-            End { name: self.tree.link_of(chain.tip).name.clone(), pieces, outward }
+            End { name: self.tree.link_of(chain.tip).name.clone(), pieces, outward }.or_its_last_piece()
         };
         self.fingers.chains.iter().enumerate().map(end).collect()
     }

@@ -60,11 +60,34 @@ pub(crate) struct End {
     pub outward: Vec3,
 }
 
+impl End {
+    /// The end, or its one shape that reaches farthest, where a ball fits that better: the pad of a
+    /// fingertip is often a mesh of its own in front of a bulky link.
+    pub fn or_its_last_piece(self) -> Self {
+        let reach = |piece: &&Piece| piece.reach(&self.outward);
+        let last = self.pieces.iter().max_by(|a, b| reach(a).total_cmp(&reach(b)));
+        let Some(last) = last.filter(|_| self.pieces.len() > 1).cloned() else { return self };
+        let alone = Self {
+            name: self.name.clone(),
+            outward: outward(&Vec3::zeros(), &[last.clone()]),
+            pieces: vec![last],
+        };
+        match (self.ball(), alone.ball()) {
+            (Some(all), Some(one)) if all.is_fit() && one.error > 0.7 * all.error => self,
+            (_, Some(one)) if one.is_fit() => alone,
+            _ => self,
+        }
+    }
+
+    fn ball(&self) -> Option<Ball> {
+        ball::fit(&self.pieces, &self.outward, None)
+    }
+}
+
 /// A radius (m, a multiple of 0.1 mm) that fits the ends of all fingers: the median of the balls that fit
 /// each; or why there is none, with one that may do.
 pub(crate) fn fitted_radius(ends: &[End]) -> Result<f64, (String, f64)> {
-    let balls: Vec<Option<Ball>> =
-        ends.iter().map(|end| ball::fit(&end.pieces, &end.outward, None).filter(Ball::is_fit)).collect();
+    let balls: Vec<Option<Ball>> = ends.iter().map(|end| end.ball().filter(Ball::is_fit)).collect();
     let mut radii: Vec<f64> = balls.iter().flatten().map(|ball| ball.radius).collect();
     radii.sort_by(f64::total_cmp);
     let tenths = |radius: f64| (radius * 1e4).round() / 1e4;
@@ -142,7 +165,7 @@ impl Tip {
     /// it was where none fits.
     ///
     /// The tip's frame stays the centre where it lies about a radius before the end.
-    pub fn fitted(self, end: &End, radius: f64) -> Self {
+    pub fn fitted(self, end: &End, radius: f64, notes: &mut Vec<String>) -> Self {
         let n = end.outward;
         let most = end.pieces.iter().map(|piece| piece.reach(&n)).fold(f64::NEG_INFINITY, f64::max);
         let before = most - n.dot(&self.center);
@@ -150,6 +173,17 @@ impl Tip {
             return self;
         }
         match ball::fit(&end.pieces, &n, Some(radius)) {
+            Some(ball) if !ball.is_fit() => {
+                notes.push(format!(
+                    "no ball of {:.1} mm fits the end of `{}`, its shape departs from it by {:.1} mm: look \
+                     at it, and give \
+                     `fingertip_radius` and `tip_offset` (`--fingertip-radius`, `--tip-offset`)",
+                    1e3 * radius,
+                    end.name,
+                    1e3 * ball.error
+                ));
+                self
+            }
             Some(ball) => Self {
                 center: ball.center,
                 outward: n,
