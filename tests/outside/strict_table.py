@@ -3,8 +3,8 @@
 
     tests/outside/strict_table.py FOLDER/runs.csv
 
-A row for each problem and variant: pairs of given grasps of one problem (`NAME-given-K`) are taken together. Counts are means over the
-runs that were solved and verified, the median beside the mean where a tail may hide in it.
+A row for each problem and variant: pairs of given grasps of one problem (`NAME-given-K`) are taken together.
+Counts are means over the runs that were solved and verified, medians in brackets.
 """
 
 import csv
@@ -48,14 +48,16 @@ def line(cells):
 
 def table(rows):
     keys = list(dict.fromkeys((family(row["scenario"]), row["variant"]) for row in rows))
-    head = ["problem", "variant", "solved", "s, median", "s, slowest"] + [name for name, _ in COLUMNS] + ["with a path in GS_n"]
+    head = ["problem", "variant", "solved", "s, median", "s, slowest"]
+    head += [name for name, _ in COLUMNS] + ["with a path in GS_n"]
     lines = [line(head), line(["---", "---"] + ["--:"] * (len(head) - 2))]
     for problem, variant in keys:
         runs = [row for row in rows if (family(row["scenario"]), row["variant"]) == (problem, variant)]
         good = [row for row in runs if solved(row)]
         times = [float(row["planning_s"]) for row in good] or [float("nan")]
         with_path = sum(int(row["used_grasp_edges"]) > 0 for row in good)
-        cells = [problem, variant, f"{len(good)} of {len(runs)}", f"{statistics.median(times):.3f}", f"{max(times):.2f}"]
+        cells = [problem, variant, f"{len(good)} of {len(runs)}"]
+        cells += [f"{statistics.median(times):.3f}", f"{max(times):.2f}"]
         cells += [mean_and_median(good, key) for _, key in COLUMNS] + [f"{with_path} of {len(good)}"]
         lines.append(line(cells))
     return "\n".join(lines)
