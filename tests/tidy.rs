@@ -114,7 +114,8 @@ fn package(value: &Value) -> Package {
     Package {
         name: text(&value["name"]),
         is_plugin: manifest.starts_with(root().join("plugins"))
-            || manifest.starts_with(root().join(TUTORIALS)),
+            || manifest.starts_with(root().join(TUTORIALS))
+            || manifest.starts_with(root().join("examples/plugins")),
         uses: normal.map(|dependency| text(&dependency["name"])).collect(),
     }
 }

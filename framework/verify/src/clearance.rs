@@ -6,11 +6,11 @@
 //! must be farther than m from touching, else the step is bisected (conservative advancement: Mirtich, "Impulse-based dynamic simulation of rigid body
 //! systems", PhD thesis, Berkeley 1996; Schwarzer, Saha, Latombe, "Exact collision checking of robot paths", WAFR 2002).
 
-use crate::contact_checks::Touch;
 use crate::hand::Chains;
 use crate::scene::Scene;
 use crate::shape::{self, Core};
 use crate::solid::Gap;
+use crate::touch::Touch;
 use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use nalgebra::Point3;

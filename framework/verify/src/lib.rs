@@ -21,6 +21,7 @@ mod shape;
 mod solid;
 mod stability;
 mod surface;
+mod touch;
 mod track;
 mod verdict;
 mod walk;

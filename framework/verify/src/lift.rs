@@ -1,9 +1,9 @@
 //! The moving fingertip of a regrasp: it touches the object at its two ends only, rising from there until it is lifted.
 
 use crate::clearance::ClearanceCheck;
-use crate::contact_checks::Touch;
 use crate::hand::Chains;
 use crate::scene::Scene;
+use crate::touch::Touch;
 use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use regrasp_api::{Body, Tolerances, Vec3};

@@ -5,9 +5,9 @@
 //! asks for, and the bound must hold: for each touching fingertip at each sample of the motion, and for a
 //! fingertip put all over the twin, wherever it enters the twin nowhere.
 
-use crate::contact_checks::Touch;
 use crate::scene::Scene;
 use crate::solid::Solid;
+use crate::touch::Touch;
 use crate::verdict::{Check, Gauge, Side};
 use regrasp_api::{
     ContactSurface, ContactSurfaceWord, MAX_FINGERS, Mesh, ObjectModel, ObjectShape, Twin, Vec3, mesh_digest,

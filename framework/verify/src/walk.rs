@@ -1,11 +1,12 @@
 //! One walk along the whole plan, which every check takes part in.
 
 use crate::clearance::ClearanceCheck;
-use crate::contact_checks::{ContactChecks, Touch};
+use crate::contact_checks::ContactChecks;
 use crate::hand::Chains;
 use crate::lift::LiftCheck;
 use crate::scene::Scene;
 use crate::stability::{HoldingCheck, HoldsCheck, StabilityCheck};
+use crate::touch::Touch;
 use crate::track::{self, Frames, Leg, SAMPLES};
 use crate::verdict::{Gauge, Verdict};
 use crate::{claims, controller, ends, motion_checks, object, rates, surface};

@@ -10,7 +10,7 @@ mod holds;
 mod load;
 mod socp;
 
-use crate::contact_checks::Touch;
+use crate::touch::Touch;
 use crate::track::{Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use force::{Contact, LEAST_SLACK, Proof};
