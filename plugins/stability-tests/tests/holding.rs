@@ -12,7 +12,7 @@ fn ball() -> ObjectModel {
     let unit = 0.03 / 3.0_f64.sqrt();
     let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     let vertices: Vec<Vec3> = corners.iter().map(|corner| Vec3::from(*corner) * unit).collect();
-    let mesh = Mesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
+    let mesh = Mesh::new(vertices, vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]);
     let mut object = ObjectModel::new(mesh.expect("a tetrahedron is closed"), None, 0.1, 0.8);
     object.p_OCm = Vec3::zeros();
     object
