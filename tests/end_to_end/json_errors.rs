@@ -32,7 +32,7 @@ fn a_number_outside_its_range_comes_with_place_value_and_range() {
     let wanted = [
         ("code", "out-of-range".into()),
         ("file", "mine.toml".into()),
-        ("line", 17.into()),
+        ("line", 20.into()),
         ("key", "object.shape.radius".into()),
         ("value", "0".into()),
         ("range", "0.000001..=1000 m".into()),
