@@ -1,6 +1,7 @@
 //! `regrasp hand`: how a robot's file is understood, and the hand file that it becomes.
 
 mod scenario;
+mod values;
 mod xacro;
 
 use crate::numbers::whole;
@@ -15,6 +16,7 @@ use regrasp::world::{ChainHand, FingerWorkspace, ObjectPlace, finger_workspace, 
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use values::{point, position, radius, range, rate};
 
 /// Show how a hand's URDF or MJCF is understood: fingers, joints, limits, reach, shapes, and what is ignored.
 #[derive(Debug, Args)]
@@ -83,7 +85,13 @@ pub struct HandArgs {
     #[arg(long, value_name = "[NAME=]E", allow_hyphen_values = true, value_parser = rate)]
     pub effort: Vec<(Option<String>, f64)>,
     /// Propose a position for a ball of this radius (m).
-    #[arg(long, value_name = "M", default_value_t = 0.03, allow_negative_numbers = true, value_parser = radius)]
+    #[arg(
+        long,
+        value_name = "M",
+        default_value_t = 0.03,
+        allow_negative_numbers = true,
+        value_parser = radius
+    )]
     pub ball: f64,
     /// Write a scenario with a ball where the fingers surround it best, instead of the hand file.
     #[arg(long, requires = "output")]
@@ -97,54 +105,6 @@ pub struct HandArgs {
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub json: bool,
-}
-
-fn point(text: &str) -> Result<Vec3, String> {
-    let read: Option<Vec<f64>> = text.split(',').map(|x| x.trim().parse::<f64>().ok()).collect();
-    let numbers: Option<[f64; 3]> = read.and_then(|numbers| numbers.try_into().ok());
-    numbers.map(Vec3::from).ok_or_else(|| "it must be three numbers such as 0,0,0.01".into())
-}
-
-/// `name=value`, or a value alone.
-fn rate(text: &str) -> Result<(Option<String>, f64), String> {
-    let (name, value) = match text.rsplit_once('=') {
-        Some((name, value)) => (Some(name.to_owned()), value),
-        None => (None, text),
-    };
-    let value =
-        value.trim().parse().map_err(|_| "it must be a number, or a joint's name, `=` and a number")?;
-    Ok((name, value))
-}
-
-fn position(text: &str) -> Result<JointChoice, String> {
-    match rate(text)? {
-        (Some(name), q) => Ok(JointChoice { name, position: Some(q), ..Default::default() }),
-        (None, _) => Err("it must be a joint's name, `=` and a number".into()),
-    }
-}
-
-fn range(text: &str) -> Result<JointChoice, String> {
-    let (name, range) = text.rsplit_once('=').unwrap_or(("", text));
-    let ends = range.split_once("..").map(|(low, high)| (low.trim().parse(), high.trim().parse()));
-    match ends {
-        Some((Ok(lower), Ok(upper))) => Ok(JointChoice {
-            name: name.into(),
-            lower: Some(lower),
-            upper: Some(upper),
-            ..Default::default()
-        }),
-        _ => {
-            Err("it must be two numbers such as -0.3..1.6, with or without a joint's name and `=` before"
-                .into())
-        }
-    }
-}
-
-fn radius(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(radius) if (1e-3..=1.0).contains(&radius) => Ok(radius),
-        _ => Err("it must be a number of metres in 0.001..=1".into()),
-    }
 }
 
 pub fn run(args: &HandArgs) -> Result<(), Failure> {
@@ -273,12 +233,15 @@ impl Understood<'_> {
         let description = self.hand.description();
         let finger = |(index, reach): (FingerIndex, &FingerWorkspace)| {
             let model = self.hand.finger(index);
+            let spare: Vec<&String> = model.spare.iter().map(|&joint| &model.joints[joint].name).collect();
             json!({
                 "name": model.name,
                 "tip_link": self.report.tips[index.index()],
                 "closed_form": self.hand.is_closed_form(index),
-                "spare_joints": model.spare.iter().map(|&joint| &model.joints[joint].name).collect::<Vec<_>>(),
-                "reach": { "lower": reach.lower.as_slice(), "upper": reach.upper.as_slice(), "volume": reach.volume },
+                "spare_joints": spare,
+                "reach": {
+                    "lower": reach.lower.as_slice(), "upper": reach.upper.as_slice(), "volume": reach.volume,
+                },
             })
         };
         json!({
