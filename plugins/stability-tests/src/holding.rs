@@ -30,7 +30,6 @@ pub struct HoldingSettings {
     pub disturbance_torque: f64,
     /// Largest normal force of one contact (N); where absent the joints' efforts alone bound it.
     #[schemars(range(min = 1e-2, max = 1e4), extend("x-unit" = "N"))]
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(example = 10.0)]
     pub max_normal_force: Option<f64>,
     /// The share of friction and efforts that is kept back (no unit), so that what holds at a plan's states
