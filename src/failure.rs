@@ -11,7 +11,7 @@ use std::process::ExitCode;
 pub struct Failure {
     code: u8,
     message: String,
-    refusal: Refusal,
+    refusal: Box<Refusal>,
 }
 
 impl Failure {
@@ -22,7 +22,7 @@ impl Failure {
 
     /// The same, of an error that says in fields what is wrong.
     pub fn refused<E: Refuse + ToString>(error: E) -> Self {
-        Self { code: 2, message: error.to_string(), refusal: error.refusal() }
+        Self { code: 2, message: error.to_string(), refusal: Box::new(error.refusal()) }
     }
 
     /// No plan within the budget (exit code 3).
@@ -46,12 +46,12 @@ impl Failure {
     }
 
     fn new(code: u8, kind: &'static str, message: String) -> Self {
-        Self { code, refusal: Refusal::new(kind, &message), message }
+        Self { code, refusal: Box::new(Refusal::new(kind, &message)), message }
     }
 
     /// The same within a longer sentence.
     pub fn told(self, message: String) -> Self {
-        Self { refusal: self.refusal.told(&message), message, ..self }
+        Self { refusal: Box::new(self.refusal.told(&message)), message, ..self }
     }
 
     /// The failure as JSON: `{"error": {"code": …, "message": …, "file": …, "line": …, "key": …, …}}`.

@@ -110,7 +110,7 @@ pub struct HandArgs {
 pub fn run(args: &HandArgs) -> Result<(), Failure> {
     let kind = if args.scenario { Kind::Scenario } else { Kind::Hand };
     let wished = args.output.as_deref().map(|path| (path, kind));
-    outputs::check(&[args.file.clone()], wished.as_slice(), args.overwrite)?;
+    outputs::check(std::slice::from_ref(&args.file), wished.as_slice(), args.overwrite)?;
     let ReadHand { description, report } = read(args)?;
     let hand = ChainHand::new(description).map_err(Failure::refused)?;
     let understood = Understood {

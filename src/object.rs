@@ -64,7 +64,7 @@ fn number(text: &str, low: f64, high: f64, what: &str) -> Result<f64, String> {
 
 pub fn run(args: &ObjectArgs) -> Result<(), Failure> {
     let wished = args.output.as_deref().map(|path| (path, Kind::Export));
-    outputs::check(&[args.file.clone()], wished.as_slice(), args.overwrite)?;
+    outputs::check(std::slice::from_ref(&args.file), wished.as_slice(), args.overwrite)?;
     let mut mesh = load(args)?;
     if args.repair {
         mesh = outward_bodies(mesh);
@@ -95,7 +95,7 @@ fn load(args: &ObjectArgs) -> Result<Mesh, Failure> {
     let file = args.file.to_string_lossy().into_owned();
     let mut source = MeshSource { file: Some(file), scale: Some(args.scale), ..Default::default() };
     let read = load_mesh(&source, Path::new(""), "object.shape");
-    let inside_out = matches!(&read, Err(FormatError::FileMesh { source: MeshError::InsideOut { .. }, .. }));
+    let inside_out = matches!(&read, Err(FormatError::FileMesh { source, .. }) if matches!(**source, MeshError::InsideOut { .. }));
     if inside_out && args.repair {
         source.flip = Some(true);
         return load_mesh(&source, Path::new(""), "object.shape").map_err(Failure::bad_input);

@@ -71,7 +71,7 @@ impl Kind {
 
     fn is(self, head: &[u8]) -> bool {
         let holds = |mark: &&str| head.windows(mark.len()).any(|part| part == mark.as_bytes());
-        self.marks().iter().any(|mark| holds(&mark))
+        self.marks().iter().any(holds)
     }
 }
 

@@ -18,7 +18,7 @@ const GAP: f64 = 5e-4;
 
 pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
     let wished = args.output.as_deref().map(|path| (path, Kind::Replay));
-    outputs::check(&[args.plan.clone()], wished.as_slice(), args.overwrite)?;
+    outputs::check(std::slice::from_ref(&args.plan), wished.as_slice(), args.overwrite)?;
     let standard = args.output.as_deref().is_some_and(outputs::is_standard);
     let plan = regrasp::plan::read(&args.plan).map_err(Failure::refused)?;
     let told = Told::new(args, &plan)?;

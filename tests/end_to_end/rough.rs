@@ -36,8 +36,8 @@ fn scenario(surface: &str, angle_deg: f64) -> String {
 
 fn desk(mesh: &Mesh, surface: &str) -> Desk {
     let desk = Desk::new();
-    desk.write("scan.obj", &obj(mesh));
-    desk.write("scan.toml", &scenario(surface, 180.0));
+    desk.write("scan.obj", obj(mesh));
+    desk.write("scan.toml", scenario(surface, 180.0));
     desk
 }
 
@@ -71,7 +71,7 @@ fn every_lie_about_the_contact_surface_is_found_out() {
     let lie = |name: &str, change: &dyn Fn(&mut Value)| {
         let mut plan = honest.clone();
         change(&mut plan);
-        desk.write(name, &plan.to_string());
+        desk.write(name, plan.to_string());
         let said = desk.run(&format!("verify {name}"));
         assert_eq!(said.code, 4, "{name} is believed: {}", said.out);
     };
@@ -99,7 +99,7 @@ fn what_is_kept_beside_the_mesh_gives_the_same_plan_and_another_mesh_another() {
     let first = plan("first.json");
     assert!(desk.files().contains(&"scan.obj.contact-surface.json".to_owned()), "{:?}", desk.files());
     assert!(first == plan("second.json"));
-    desk.write("scan.obj", &obj(&scanned(Primitive::Sphere { radius: 0.03 }, 5120, 8e-5, 18)));
+    desk.write("scan.obj", obj(&scanned(Primitive::Sphere { radius: 0.03 }, 5120, 8e-5, 18)));
     assert!(first.0 != plan("third.json").0, "what was kept of the first mesh does not serve the second");
 }
 

@@ -46,7 +46,7 @@ pub enum SettingsError {
     Form(String),
     /// A key, a type or a value that the schema refuses.
     #[error(transparent)]
-    Departs(#[from] Departure),
+    Departs(Box<Departure>),
     /// A value that makes no sense beside the others.
     #[error("`{key}` = {value} {reason}; {remedy}")]
     Value {
@@ -62,6 +62,12 @@ pub enum SettingsError {
     /// The plugin panicked while it looked at them.
     #[error("{0}")]
     Panicked(String),
+}
+
+impl From<Departure> for SettingsError {
+    fn from(departure: Departure) -> Self {
+        Self::Departs(Box::new(departure))
+    }
 }
 
 /// A plugin cannot be built from these settings and parts.

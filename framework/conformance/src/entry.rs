@@ -117,9 +117,8 @@ fn ranges(subject: &Subject<'_>) -> Finding {
 
 /// The range that a refusal states is the one that is kept: its ends are accepted, what lies beyond is not.
 fn edges(subject: &Subject<'_>, leaf: &Leaf, error: &SettingsError) -> Finding {
-    let SettingsError::Departs(Departure { path, fault: Refusal::Range { range, .. } }) = error else {
-        return Ok(());
-    };
+    let SettingsError::Departs(departure) = error else { return Ok(()) };
+    let Departure { path, fault: Refusal::Range { range, .. } } = &**departure else { return Ok(()) };
     let name = leaf.name();
     // An item of a list is named by its list and its place.
     let own = |path: &str| path == name || path.starts_with(&format!("{name}["));

@@ -45,7 +45,7 @@ pub enum FormatError {
         /// The file.
         path: PathBuf,
         /// What is wrong with the mesh, and the fix.
-        source: MeshError,
+        source: Box<MeshError>,
     },
     /// A mesh given in place that cannot be used.
     #[error("`{key}`: the mesh is refused: {source}")]
@@ -62,7 +62,7 @@ impl FormatError {
     pub(crate) fn source(key: &str, path: Option<&Path>, error: MeshSourceError) -> Self {
         match (error, path) {
             (MeshSourceError::Mesh(source), Some(path)) => {
-                Self::FileMesh { key: format!("{key}.file"), path: path.into(), source }
+                Self::FileMesh { key: format!("{key}.file"), path: path.into(), source: Box::new(source) }
             }
             (MeshSourceError::Mesh(source), None) => Self::Mesh { key: key.into(), source },
             (MeshSourceError::Scale(value), _) => {

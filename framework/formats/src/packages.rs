@@ -179,7 +179,7 @@ fn in_any_case(root: &Path, end: &Path) -> Option<PathBuf> {
                 let mut same: Vec<PathBuf> =
                     fs::read_dir(if place.as_os_str().is_empty() { Path::new(".") } else { &place })
                         .ok()?
-                        .filter_map(|entry| Some(entry.ok()?.file_name().into_string().ok()?))
+                        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
                         .filter(|other| other.to_lowercase() == wanted)
                         .map(|other| place.join(other))
                         .collect();

@@ -93,7 +93,7 @@ impl Needs {
                 continue;
             }
             sentences.push(format!("{}: {}", listed(&names), what.sentence()));
-            flags.extend(flag(what, &names).filter(|flag| !flags.contains(flag)).into_iter());
+            flags.extend(flag(what, &names).filter(|flag| !flags.contains(flag)));
         }
         if sentences.is_empty() {
             return Ok(());

@@ -49,8 +49,8 @@ pub(crate) fn moved(joint: &Joint, q: f64) -> Pose {
 
 /// The chosen position, or the one nearest to 0 within the limits.
 fn start(joint: &Joint, options: &HandOptions) -> f64 {
-    let chosen = options.joints.iter().filter(|choice| choice.matches(&joint.name));
-    if let Some(q) = chosen.filter_map(|choice| choice.position).last() {
+    let chosen = options.joints.iter().rev().filter(|choice| choice.matches(&joint.name));
+    if let Some(q) = chosen.filter_map(|choice| choice.position).next() {
         return q;
     }
     let limit = joint.limit.unwrap_or_default();

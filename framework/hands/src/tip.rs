@@ -69,7 +69,7 @@ impl End {
         let Some(last) = last.filter(|_| self.pieces.len() > 1).cloned() else { return self };
         let alone = Self {
             name: self.name.clone(),
-            outward: outward(&Vec3::zeros(), &[last.clone()]),
+            outward: outward(&Vec3::zeros(), std::slice::from_ref(&last)),
             pieces: vec![last],
         };
         match (self.ball(), alone.ball()) {

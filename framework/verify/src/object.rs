@@ -55,13 +55,15 @@ fn primitive(shape: &ObjectShape, facets: &Facets) -> Result<Mesh, String> {
         .map_err(|error| format!("the recorded facets of the object: {error}"))?;
     let (shortest, longest) = closed_form.lengths();
     let off = |p: &Vec3| closed_form.distance(p).abs();
-    if let Some(v) = mesh.vertices().iter().position(|v| !(off(v) <= ON_SURFACE * longest)) {
+    // What is not a number is within nothing.
+    let within = |distance: f64, most: f64| distance <= most;
+    if let Some(v) = mesh.vertices().iter().position(|v| !within(off(v), ON_SURFACE * longest)) {
         return Err(format!("vertex {v} of the recorded facets is not on the object's surface"));
     }
     let most = FACETING * longest * longest / (shortest * mesh.facets().len() as f64);
     let far = |facet: u32| {
         let [a, b, c] = mesh.corners(facet);
-        [(a + b + c) / 3.0, (a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0].iter().any(|p| !(off(p) <= most))
+        [(a + b + c) / 3.0, (a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0].iter().any(|p| !within(off(p), most))
     };
     match (0..mesh.facets().len() as u32).find(|&facet| far(facet)) {
         Some(facet) => Err(format!("facet {facet} of the recorded ones cuts off a part of the object")),

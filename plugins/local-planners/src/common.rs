@@ -19,8 +19,8 @@ pub(crate) fn wrong_target(plugin: &str, slot: Slot) -> CallError {
 
 /// How far (m) a fingertip is taken off the object to find a second place that it nearly touches.
 ///
-/// Off an edge whose facets' normals differ by θ, a second place comes closest if its gap is below 1 mm · (1
-/// - cos θ): for each jump of the contact over more than a plan's closure the fingertip then is some
+/// Off an edge whose facets' normals differ by θ, a second place comes closest if its gap is below 1 mm ·
+/// (1 − cos θ): for each jump of the contact over more than a plan's closure the fingertip then is some
 /// micrometres to the side of where it would happen, which is what motions between two states stray. Our
 /// choice.
 const PROBE_LIFT: f64 = 1e-3;

@@ -16,7 +16,7 @@ fn load(name: &str, bytes: impl AsRef<[u8]>) -> Result<Mesh, FormatError> {
 
 fn refusal(name: &str, bytes: impl AsRef<[u8]>) -> MeshError {
     match load(name, bytes) {
-        Err(FormatError::FileMesh { source, .. }) => source,
+        Err(FormatError::FileMesh { source, .. }) => *source,
         other => panic!("{other:?}"),
     }
 }

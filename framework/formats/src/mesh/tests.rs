@@ -246,7 +246,7 @@ fn damaged_meshes_are_refused_with_file_and_fix() {
     let (facets, vertices) = (cube().facets().to_vec(), cube().vertices().to_vec());
     let load = |text: String| Folder::with("x.obj", text).load(file("x.obj")).unwrap_err();
     let fault = |text| match load(text) {
-        FormatError::FileMesh { source, path, .. } if path.ends_with("x.obj") => source,
+        FormatError::FileMesh { source, path, .. } if path.ends_with("x.obj") => *source,
         other => panic!("{other}"),
     };
     assert!(matches!(fault(obj(&facets[1..], &vertices)), MeshError::Open { count: 3, .. }));

@@ -25,6 +25,7 @@ pub type Forces = [Exerted; MAX_FINGERS];
 
 /// Whether forces balance a load.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant)] // it lives on the stack of an inner loop, which allocates nothing
 pub enum Balanced {
     /// These do, strictly inside all bounds.
     Yes(Forces),

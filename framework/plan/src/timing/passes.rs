@@ -9,6 +9,7 @@
 //! The root lies between 0 and (x0 + x1)/2: demanding the limits for both makes them linear in x0 and x1, and asks for a little more.
 
 use super::{JointBounds, Path};
+use std::cmp::Ordering;
 
 /// What the passes find.
 pub(super) struct Pace {
@@ -105,7 +106,8 @@ fn most_before(rows: &[Row], cap: f64, next: f64) -> f64 {
         let (room, slope) = (at(upper) - at(lower), upper.1 - lower.1);
         let crossing = if room < 0.0 { x - room / slope } else { x };
         let better = crossing.min(alone);
-        if !(better < x * (1.0 - 1e-12)) {
+        // What is not a number is no better either.
+        if better.partial_cmp(&(x * (1.0 - 1e-12))) != Some(Ordering::Less) {
             return x;
         }
         x = better.max(0.0);
