@@ -74,7 +74,11 @@ pub fn run(args: &ExportArgs) -> Result<(), Failure> {
     make_folder(&args.output)?;
     for (_, file) in &files {
         let path = args.output.join(&file.name);
-        outputs::check(std::slice::from_ref(&args.plan), &[(&path, Kind::Export)], OverwriteArgs { force: true })?;
+        outputs::check(
+            std::slice::from_ref(&args.plan),
+            &[(&path, Kind::Export)],
+            OverwriteArgs { force: true },
+        )?;
         outputs::check_export(&path, &file.bytes, args.overwrite)?;
     }
     for (_, file) in &files {
