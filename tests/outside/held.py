@@ -39,19 +39,21 @@ class Held:
 
     def stable(self, s, q, criterion):
         points, normals, mu, gamma = self.grasp(s, q)
-        if not isinstance(criterion, dict) or "equilibrium" not in criterion:
+        if not isinstance(criterion, dict):
             return grasps.slack(points, normals, mu, gamma)
-        load = criterion["equilibrium"]
-        most = load["max_normal_force"]
-        weight = np.array(self.problem.get("gravity", [0, 0, -9.81])) * self.problem["object"].get(
-            "mass", 0.1
-        )
+        (kind, load), *_ = criterion.items()
+        # `holding` counts on a share of the friction; efforts are checked with the forces.
+        share = load["friction_factor"] if kind == "holding" else 1.0
+        most = load.get("max_normal_force") or 100.0
+        weight = np.array(self.problem.get("gravity", [0, 0, -9.81]))
+        weight = weight * self.problem["object"].get("mass", 0.1) * load.get("weight", True)
         w = np.concatenate([pose_of_state(q).rotation.T @ weight, np.zeros(3)])
         pushes = [np.zeros(6)]
         for axis in np.vstack([np.eye(3), -np.eye(3)]):
             pushes.append(np.concatenate([axis * load["disturbance_force"], np.zeros(3)]))
             pushes.append(np.concatenate([np.zeros(3), axis * load["disturbance_torque"] / self.length]))
-        return min(grasps.slack(points, normals, mu, gamma, w + push, most) / most for push in pushes)
+        slacks = [grasps.slack(points, normals, share * mu, gamma, w + push, most) for push in pushes]
+        return min(slacks) / most
 
     def forces(self, s, k, q, mu):
         """Forces of a state lie in their cones, bear the weight, and are within the efforts."""
