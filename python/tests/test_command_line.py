@@ -37,7 +37,9 @@ def test_a_plugin_from_a_file_plans_and_conforms(tmp_path, capsys) -> None:
 def test_exit_codes_are_those_of_the_program(tmp_path, capsys) -> None:
     (tmp_path / "empty.py").write_text("")
     assert main(["plan", "spere"]) == 2
-    assert main(["plan", "cubic", "--max-nodes", "2"]) == 3
+    slippery = tmp_path / "slippery.toml"
+    slippery.write_text(rg.scenario_text("sphere").replace("friction = 0.8", "friction = 0.02"))
+    assert main(["plan", str(slippery)]) == 3
     assert main(["plan", "sphere", "--load", str(tmp_path / "empty.py")]) == 2
     assert main(["plan", "sphere", "--load", str(tmp_path / "none.py")]) == 2
     assert main(["plan", "sphere", "--use", "sampler"]) == 2

@@ -96,7 +96,8 @@ def test_states_of_other_lengths_are_refused(plan: rg.Plan) -> None:
         rg.Plan.from_dict(tree).joints  # noqa: B018
 
 
-def test_the_table_has_names_and_times(plan: rg.Plan) -> None:
+def test_the_table_has_names_and_times() -> None:
+    plan = rg.plan("cubic", seed=1)
     frame = plan.to_frame()
     assert len(frame) == len(plan.times) and frame.index.name == "time"
     assert set(frame["kind"]) == {"transfer", "regrasp"}
@@ -110,10 +111,14 @@ def test_the_page_shows_in_a_notebook(plan: rg.Plan) -> None:
 
 
 def test_no_plan_says_why_and_what_to_try() -> None:
+    slippery = rg.Scenario(
+        object=rg.Sphere(0.03, friction=0.02), start=rg.pose(z=0.085), goals=[rg.pose(z=0.09)]
+    )
     with pytest.raises(rg.NoPlan) as failure:
-        rg.plan("cubic", seed=0, max_nodes=2)
+        slippery.plan(seed=0, max_nodes=20)
     error = failure.value
     assert error.stopped_by == "max-nodes" and "max_nodes" in error.advice and "--" not in error.advice
+    assert error.partial is None and "goal 1" in error.reason
     assert error.rejections and all(
         count > 0 for causes in error.rejections.values() for count in causes.values()
     )
