@@ -11,8 +11,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-/// One finger: a joint for spreading and two for bending. Metres and radians; all fingers are alike but for
-/// name and place.
+/// One finger: a joint for spreading, two for bending. Metres, radians; fingers differ in name and place.
 const FINGER: &str = r#"
 [[finger]]
 name = "NAME"

@@ -139,7 +139,10 @@ impl Draft {
             ("Cargo.lock", LOCK.to_owned()),
             (".gitignore", "/target\n".to_owned()),
             ("README.md", self.fill(text::README)),
-            ("src/lib.rs", self.source.replace(TEMPLATE_NAME, &self.fill("/{{name}}\""))),
+            (
+                "src/lib.rs",
+                self.source.replace(TEMPLATE_NAME, &self.fill("/{{name}}\"")) + text::REGISTRATION,
+            ),
             ("tests/conformance.rs", self.fill(conformance)),
             ("dynamic/Cargo.toml", self.fill(text::DYNAMIC_MANIFEST)),
             ("dynamic/src/lib.rs", self.fill(text::DYNAMIC)),

@@ -88,8 +88,10 @@ pub fn edited(role: &str, name: &str, files: &[(PathBuf, PathBuf)]) -> PathBuf {
 /// The library whose plugins panic.
 pub fn faulty() -> PathBuf {
     let _building = lock();
-    let api = Path::new(env!("CARGO_MANIFEST_DIR")).join("framework").join("api");
-    let manifest = include_str!("faulty/Cargo.toml.in").replace("{{api}}", &format!("{api:?}"));
+    let framework = Path::new(env!("CARGO_MANIFEST_DIR")).join("framework");
+    let path = |name: &str| format!("{:?}", framework.join(name));
+    let manifest = include_str!("faulty/Cargo.toml.in").replace("{{api}}", &path("api"));
+    let manifest = manifest.replace("{{abi}}", &path("abi"));
     let folder = root().join("faulty");
     keep(&folder.join("Cargo.toml"), manifest.as_bytes());
     keep(&folder.join("Cargo.lock"), include_bytes!("../../Cargo.lock"));

@@ -3,7 +3,7 @@
 use crate::desk::{Desk, built_in};
 
 /// A plan file that must survive.
-const KEPT: &str = "a plan of yesterday";
+const KEPT: &str = "{ \"format\": \"regrasp-plan\", \"kept\": true }";
 
 /// Plans `scenario` over an old plan; it must be refused with all of `parts`, and the old plan left alone.
 fn refused(scenario: &str, parts: &[&str]) {
@@ -221,8 +221,8 @@ fn plan_files_that_are_none() {
     let plan = desk.read("plan.json");
     desk.write("short.json", &plan[..plan.len() / 2]);
     desk.run("verify short.json").assert_fails(2, &["short.json", "truncated"]);
-    desk.write("later.json", plan.replacen("\"version\": 1", "\"version\": 99", 1));
-    desk.run("verify later.json").assert_fails(2, &["version 99", "reads version 1"]);
+    desk.write("later.json", plan.replacen("\"version\": 2", "\"version\": 99", 1));
+    desk.run("verify later.json").assert_fails(2, &["version 99", "reads version"]);
     desk.write("full.json", plan.replacen("\"mu\": 0.8", "\"mu\": 0.9", 1));
     desk.run("verify full.json").assert_fails(4, &["does not verify: claims"]);
     desk.write("other.json", "{\"format\": \"something-else\"}");

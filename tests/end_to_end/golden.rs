@@ -109,8 +109,9 @@ fn a_plan_stands_alone_and_an_edited_one_is_caught() {
 
 #[test]
 fn unreachable_goals_end_with_the_reasons_and_an_advice() {
+    const OLD: &str = "{ \"format\": \"regrasp-plan\", \"old\": true }";
     let desk = Desk::new();
-    desk.write("plan.json", "old");
+    desk.write("plan.json", OLD);
     let goal = "pose = { position = [0.0, 0.0, 0.085], axis";
     desk.write("mine.toml", built_in("sphere", &[(goal, "pose = { position = [0.3, 0.0, 0.3], axis")]));
     let said = desk.run("plan mine.toml --max-nodes 50 -o plan.json");
@@ -120,7 +121,7 @@ fn unreachable_goals_end_with_the_reasons_and_an_advice() {
     let report = said.json();
     assert_eq!((&report["status"], &report["verified"]), (&"no-plan".into(), &false.into()));
     assert!(report["rejections"]["sampler"].as_object().is_some_and(|causes| !causes.is_empty()));
-    assert_eq!((desk.read("plan.json").as_str(), desk.files().len()), ("old", 2));
+    assert_eq!((desk.read("plan.json").as_str(), desk.files().len()), (OLD, 2));
 }
 
 #[test]

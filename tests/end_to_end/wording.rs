@@ -83,7 +83,7 @@ fn files_of_the_wrong_kind() {
     refused(
         &desk,
         &[
-            ("plan plan.json", &["it is JSON, and a scenario is TOML", "plan files are for `verify`"]),
+            ("plan plan.json", &["it is a plan, not a scenario", "plan files are for `verify`"]),
             ("plan folder", &["it is a folder; name the file in it"]),
             ("plan cubic.toml", &["No such file", "the built-in scenario is called `cubic`"]),
             ("plan mein.toml", &["No such file", "`scenarios sphere` prints a built-in one to start from"]),
@@ -101,7 +101,7 @@ fn files_of_the_wrong_kind() {
 }
 
 #[test]
-fn what_is_refused_as_json_leaves_standard_output_empty() {
+fn what_is_refused_as_json_is_told_in_fields_too() {
     let desk = Desk::new();
     for arguments in [
         "plan spere --json",
@@ -111,7 +111,8 @@ fn what_is_refused_as_json_leaves_standard_output_empty() {
     ] {
         let said = desk.run(arguments);
         said.assert_fails(2, &["error: "]);
-        assert_eq!(said.out, "", "{arguments}");
+        let error = &said.json()["error"];
+        assert!(error["code"].is_string() && error["message"].is_string(), "{arguments}: {}", said.out);
     }
     assert!(desk.files().is_empty());
 }

@@ -58,4 +58,3 @@ pub const ENTRY: Entry = Entry {
         Ok(Box::new(ScaledFriction::new(ScaledFrictionSettings::from_json(json)?)?))
     }),
 };
-regrasp_api::inventory::submit! { ENTRY }

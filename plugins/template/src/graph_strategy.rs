@@ -80,4 +80,3 @@ pub const ENTRY: Entry = Entry {
         Ok(Box::new(Alternate::new(AlternateSettings::from_json(json)?)?))
     }),
 };
-regrasp_api::inventory::submit! { ENTRY }

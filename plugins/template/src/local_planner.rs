@@ -235,4 +235,3 @@ pub const ENTRY: Entry = Entry {
         Ok(Box::new(UpOverDown::new(UpOverDownSettings::from_json(json)?)?))
     }),
 };
-regrasp_api::inventory::submit! { ENTRY }

@@ -192,4 +192,3 @@ pub const ENTRY: Entry = Entry {
     check: check_settings::<RejectionSettings>,
     build: Build::Sampler(|json, _parts| Ok(Box::new(Rejection::new(RejectionSettings::from_json(json)?)?))),
 };
-regrasp_api::inventory::submit! { ENTRY }

@@ -158,4 +158,3 @@ pub const ENTRY: Entry = Entry {
         Ok(Box::new(PressedPair::new(PressedPairSettings::from_json(json)?)?))
     }),
 };
-regrasp_api::inventory::submit! { ENTRY }

@@ -325,4 +325,3 @@ pub const ENTRY: Entry = Entry {
     check: check_settings::<FacetsSettings>,
     build: Build::Surface(|json, parts| Ok(Box::new(Facets::new(FacetsSettings::from_json(json)?, parts)?))),
 };
-regrasp_api::inventory::submit! { ENTRY }

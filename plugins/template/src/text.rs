@@ -14,6 +14,11 @@ pub fn module(role: Role) -> (&'static str, Slot) {
     }
 }
 
+/// The last line of a crate with one of these modules: it registers the plugin with whatever links the crate.
+///
+/// The template itself registers nothing: the program links it for its texts.
+pub const REGISTRATION: &str = "regrasp_api::inventory::submit! { ENTRY }\n";
+
 /// The crate's `Cargo.toml`.
 pub const MANIFEST: &str = include_str!("../crate/Cargo.toml.in");
 /// Its `README.md`.

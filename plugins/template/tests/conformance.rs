@@ -2,7 +2,15 @@
 #![allow(missing_docs)]
 
 use regrasp_conformance::{Demands, Report, check_with, registered, registered_are_silent};
-use regrasp_template as _; // a dependency alone registers nothing
+use regrasp_template::{contact_model, graph_strategy, local_planner, sampler, stability_test, surface};
+
+// The template registers nothing: the program links it for its texts.
+regrasp_api::inventory::submit! { contact_model::ENTRY }
+regrasp_api::inventory::submit! { stability_test::ENTRY }
+regrasp_api::inventory::submit! { surface::ENTRY }
+regrasp_api::inventory::submit! { sampler::ENTRY }
+regrasp_api::inventory::submit! { local_planner::ENTRY }
+regrasp_api::inventory::submit! { graph_strategy::ENTRY }
 
 /// Paths of `surface/template` may be this much longer than the shortest, relative.
 const GEODESIC_TOLERANCE: f64 = 0.05;

@@ -119,6 +119,10 @@ impl<'a> Walk<'a> {
         if let (Some(words), Some(table)) = (words_among(&alternatives), table_among(&alternatives)) {
             return self.check(value, if value.is_object() { table } else { words }, path);
         }
+        // A word or a number likewise.
+        if let (Some(words), Some(number)) = (words_among(&alternatives), number_among(&alternatives)) {
+            return self.check(value, if value.is_string() { words } else { number }, path);
+        }
         // What is left is an option: the value may be null or something else.
         let something = alternatives.iter().find(|schema| schema.get("type") != Some(&Value::from("null")));
         match something {
@@ -163,6 +167,10 @@ fn words_among<'a>(alternatives: &[&'a Value]) -> Option<&'a Value> {
 
 fn table_among<'a>(alternatives: &[&'a Value]) -> Option<&'a Value> {
     alternatives.iter().find(|schema| schema.get("type") == Some(&Value::from("object"))).copied()
+}
+
+fn number_among<'a>(alternatives: &[&'a Value]) -> Option<&'a Value> {
+    alternatives.iter().find(|schema| schema.get("type") == Some(&Value::from("number"))).copied()
 }
 
 /// The key whose constant value tells the alternatives of a tagged enumeration apart.
