@@ -201,8 +201,12 @@ mod tests {
             assert!(!steps.contains("{{") && steps.contains("cd mine\n"), "{steps}");
             for name in ["Cargo.toml", "dynamic/Cargo.toml"] {
                 let manifest: toml::Table = text(name).parse().unwrap();
-                let path = manifest["dependencies"]["regrasp-api"]["path"].as_str().unwrap();
-                assert!(Path::new(path).ends_with("\"odd\" tree/framework/api"), "{path}");
+                let (package, room) = match name {
+                    "Cargo.toml" => ("regrasp-api", "api"),
+                    _ => ("regrasp-abi", "abi"),
+                };
+                let path = manifest["dependencies"][package]["path"].as_str().unwrap();
+                assert!(Path::new(path).ends_with(format!("\"odd\" tree/framework/{room}")), "{path}");
             }
         }
     }

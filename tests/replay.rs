@@ -94,7 +94,7 @@ fn nearly_all_default_plans_arrive() {
 
 #[test]
 fn the_same_plan_falls_where_friction_is_far_lower_or_the_object_far_heavier() {
-    let plan = balanced("sphere", 1);
+    let plan = balanced("sphere", 2);
     for simulation in [
         SimulationSettings { friction: Some(0.1), ..Default::default() },
         SimulationSettings { mass: Some(5.0), ..Default::default() },
@@ -172,7 +172,7 @@ fn command(folder: &Path, arguments: &str) -> (i32, String, String) {
 #[test]
 fn the_command_reports_segments_and_ends_with_4_where_the_object_does_not_arrive() {
     let folder = tempfile::tempdir().unwrap();
-    let plan = balanced("sphere", 1);
+    let plan = balanced("sphere", 2);
     regrasp::plan::write(&folder.path().join("plan.json"), &plan).unwrap();
     let run = |arguments: &str| command(folder.path(), arguments);
     let (code, out, err) = run("replay plan.json -o replay.json");

@@ -11,6 +11,7 @@ fn every_stability_test_is_registered_with_sources_and_a_schema() {
     let known = [
         "stability-test/equilibrium",
         "stability-test/force-closure",
+        "stability-test/holding",
         "stability-test/linearised",
         "stability-test/socp",
         "stability-test/wrench-ball",

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 pub struct GreasySettings {
     /// Direction of the greasy side in the object's frame; its length does not count, but must not be 0.
-    #[schemars(inner(range(min = -1.0, max = 1.0)), extend("x-unit" = "1"))]
+    #[schemars(inner(range(min = -1000.0, max = 1000.0)), extend("x-unit" = "1"))]
     pub side: [f64; 3],
     /// Points at least this far (m) along `side` from the object's origin are greasy.
     #[schemars(range(min = -1.0, max = 1.0), extend("x-unit" = "m"))]

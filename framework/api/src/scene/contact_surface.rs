@@ -31,7 +31,7 @@ pub enum ContactSurfaceWord {
 pub struct Nearness {
     /// How far a fingertip that touches the twin may be from touching the mesh, and how deep it may enter it
     /// (m).
-    #[schemars(range(min = 1e-6, max = 0.01))]
+    #[schemars(range(min = 1e-6, max = 0.01), extend("x-unit" = "m"))]
     #[schemars(example = 3e-4)]
     pub tolerance: f64,
 }
