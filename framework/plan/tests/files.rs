@@ -184,6 +184,8 @@ fn what_version_2_adds_comes_back_exactly_and_its_numbers_are_finite() {
 fn plans_of_version_1_are_read_and_stay_what_they_are() {
     let mut old = example();
     old.version = 1;
+    // Version 1 knew no velocities.
+    old.segments.iter_mut().flat_map(|segment| &mut segment.states).for_each(|state| state.velocities = None);
     let written = text(&old);
     assert!(written.contains("\"version\": 1,\n") && !written.contains("velocities"));
     assert_eq!(parse(&written).unwrap(), old);
