@@ -80,6 +80,8 @@ impl ContactModel for Liar {
         match self.lie {
             Lie::SpinsOnForEver => Cone::Elliptic { mu, gamma: 1e-3 },
             Lie::ForgetsToSpin => Cone::FRICTIONLESS,
+            // Torsion is its one fault, and that only at rest.
+            Lie::Millimetres => Cone::Elliptic { mu, gamma: 0.0 },
             _ => self.cone(finger, contact, mu),
         }
     }

@@ -44,33 +44,49 @@ fn folded(mesh: &Mesh, facet: u32) -> Result<(), BodyFault> {
     fold.map_or(Ok(()), |k| Err(BodyFault::Fold { at: ((corners[k] + corners[(k + 1) % 3]) / 2.0).into() }))
 }
 
-/// Where two facets cross; `None` where they share an edge, only touch, or are apart.
+/// Where two facets cross: the middle of the piece of line that they share. `None` where they share an edge,
+/// only touch, or are apart.
 fn crossing(mesh: &Mesh, a: u32, b: u32, deep: f64) -> Option<Vec3> {
     let (of_a, of_b) = (mesh.facets()[a as usize], mesh.facets()[b as usize]);
     if of_a.iter().filter(|vertex| of_b.contains(vertex)).count() > 1 {
         return None;
     }
-    pierced(mesh, (a, &of_a), (b, &of_b), deep).or_else(|| pierced(mesh, (b, &of_b), (a, &of_a), deep))
+    // Both cuts lie on the line in which the two planes meet.
+    let ([p, q], [r, s]) = (cut(mesh, a, b, deep)?, cut(mesh, b, a, deep)?);
+    let length = (q - p).norm();
+    if length <= deep {
+        return None;
+    }
+    let along = (q - p) / length;
+    let (r, s) = ((r - p).dot(&along), (s - p).dot(&along));
+    let (from, to) = (r.min(s).max(0.0), r.max(s).min(length));
+    (to - from > deep).then(|| p + along * (0.5 * (from + to)))
 }
 
-/// Where an edge of the facet `a` goes through the facet `b`.
-fn pierced(mesh: &Mesh, (a, of_a): (u32, &[u32; 3]), (b, of_b): (u32, &[u32; 3]), deep: f64) -> Option<Vec3> {
-    let (ends, corners, n) = (mesh.corners(a), mesh.corners(b), mesh.normal(b));
-    (0..3).find_map(|k| {
+/// The piece of the plane of `other` within a facet whose surface goes through that plane there: across the
+/// facet itself, or along an edge of it, beyond which the surface goes on at the other side.
+fn cut(mesh: &Mesh, facet: u32, other: u32, deep: f64) -> Option<[Vec3; 2]> {
+    let (n, on) = (mesh.normal(other), mesh.corners(other)[0]);
+    let height = |p: &Vec3| n.dot(&(p - on));
+    let side = |h: f64| if h.abs() <= deep { 0.0 } else { h.signum() };
+    let corners = mesh.corners(facet);
+    let heights = corners.map(|p| height(&p));
+    let sides = heights.map(side);
+    if let Some(k) = (0..3).find(|&k| sides[k] == 0.0 && sides[(k + 1) % 3] == 0.0) {
+        let across = mesh.neighbors(facet)[k];
+        let tip = mesh.corners(across.facet)[(usize::from(across.edge) + 2) % 3];
+        let through = sides[(k + 2) % 3] * side(height(&tip)) < 0.0;
+        return through.then_some([corners[k], corners[(k + 1) % 3]]);
+    }
+    let mut ends = (0..3).filter_map(|k| {
         let next = (k + 1) % 3;
-        if of_b.contains(&of_a[k]) || of_b.contains(&of_a[next]) {
-            return None;
+        match sides[k] * sides[next] {
+            _ if sides[k] == 0.0 => Some(corners[k]),
+            opposite if opposite < 0.0 => {
+                Some(corners[k].lerp(&corners[next], heights[k] / (heights[k] - heights[next])))
+            }
+            _ => None,
         }
-        let (p, q) = (ends[k], ends[next]);
-        let (from, to) = (n.dot(&(p - corners[0])), n.dot(&(q - corners[0])));
-        if from * to >= 0.0 || from.abs() <= deep || to.abs() <= deep {
-            return None;
-        }
-        let x = p.lerp(&q, from / (from - to));
-        let inside = |i: usize| {
-            let side = corners[(i + 1) % 3] - corners[i];
-            n.cross(&side).dot(&(x - corners[i])) > deep * side.norm()
-        };
-        (0..3).all(inside).then_some(x)
-    })
+    });
+    Some([ends.next()?, ends.next()?])
 }

@@ -73,11 +73,28 @@ fn bodies_apart_are_an_assembly_or_refused() {
 #[test]
 fn a_surface_through_itself_is_named_with_the_place() {
     let ball = primitive_mesh(&Primitive::Sphere { radius: 0.02 }, 320).unwrap();
-    let mut vertices = ball.vertices().to_vec();
-    let top = (0..vertices.len()).max_by(|&a, &b| vertices[a].z.total_cmp(&vertices[b].z)).unwrap();
-    // Beside the axis: edge upon edge, as mirrored parts have it, is not found.
-    vertices[top] = Vec3::new(vertices[top].x + 1.1e-3, vertices[top].y + 0.7e-3, -0.03);
-    let fault = rigid_body(Mesh::new(vertices, ball.facets().to_vec()).unwrap(), false).unwrap_err();
-    assert!(matches!(fault, BodyFault::Crossing { .. }), "{fault}");
+    let top = (0..ball.vertices().len())
+        .max_by(|&a, &b| ball.vertices()[a].z.total_cmp(&ball.vertices()[b].z))
+        .unwrap();
+    let [x, y, z] = ball.vertices()[top].into();
+    // Straight through the opposite vertex, edge upon edge, and beside it.
+    for apex in [Vec3::new(-1.5 * x, -1.5 * y, -1.5 * z), Vec3::new(x + 1.1e-3, y + 0.7e-3, -0.03)] {
+        let mut vertices = ball.vertices().to_vec();
+        vertices[top] = apex;
+        let fault = rigid_body(Mesh::new(vertices, ball.facets().to_vec()).unwrap(), false).unwrap_err();
+        assert!(matches!(fault, BodyFault::Crossing { .. }), "{apex}: {fault}");
+    }
     assert!(rigid_body(ball, false).is_ok());
+}
+
+#[test]
+fn bodies_that_cross_edge_upon_edge_or_touch_are_told_apart() {
+    // Mirrored about the planes of symmetry: the edges of each go through the diagonals of the other.
+    let plus = boxes(&[(Vec3::zeros(), 0.02, true), (Vec3::new(0.02, 0.0, 0.0), 0.01, true)]);
+    let union = rigid_body(plus, false).unwrap();
+    let wanted = 0.04f64.powi(3) + 0.5 * 0.02f64.powi(3);
+    assert!((union.mass_properties().volume - wanted).abs() < 1e-12, "{}", union.mass_properties().volume);
+    // Face upon face: nothing reaches through anything.
+    let upon = boxes(&[(Vec3::zeros(), 0.02, true), (Vec3::new(0.0, 0.0, 0.03), 0.01, true)]);
+    assert!(!matches!(rigid_body(upon, true), Err(BodyFault::Crossing { .. } | BodyFault::Overlap { .. })));
 }

@@ -96,15 +96,16 @@ impl LocalPlanner for RapierChecked {
         path: Option<&mut Path>,
         context: &mut Context<'_>,
     ) -> Result<Reached, CallError> {
+        context.count_call(SLOT);
         let mu = friction(task, from)?;
         let mut own = Path::default();
         let path = path.unwrap_or(&mut own);
-        let reached = self.rolling.connect(task, from, to, Some(path), context)?;
-        let Target::Transfer(to) = to else { return Ok(reached) };
-        if path.states.len() < 2 {
+        let mut reached = self.rolling.roll(task, from, to, Some(path), context)?;
+        let cut = if path.states.len() < 2 { None } else { self.cut(task, &path.states, mu, context)? };
+        let (Some((count, reason)), Target::Transfer(to)) = (cut, to) else {
+            reached.stop = reached.stop.map(|reason| context.reject(SLOT, reason));
             return Ok(reached);
-        }
-        let Some((count, reason)) = self.cut(task, &path.states, mu, context)? else { return Ok(reached) };
+        };
         path.states.truncate(count);
         let end = path.states.last().expect("at least the start is kept").clone();
         let fraction = if count == 1 { 0.0 } else { fraction(&from.X_HO, &end.X_HO, to) };

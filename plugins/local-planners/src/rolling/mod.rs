@@ -101,10 +101,26 @@ impl LocalPlanner for Rolling {
         task: &Task<'_>,
         from: &Configuration,
         to: &Target<'_>,
-        mut path: Option<&mut Path>,
+        path: Option<&mut Path>,
         context: &mut Context<'_>,
     ) -> Result<Reached, CallError> {
         context.count_call(SLOT);
+        let mut reached = self.roll(task, from, to, path, context)?;
+        reached.stop = reached.stop.map(|reason| context.reject(SLOT, reason));
+        Ok(reached)
+    }
+}
+
+impl Rolling {
+    /// What [`LocalPlanner::connect`] does, a refusal not yet counted: it is left to who builds upon the motion.
+    pub(crate) fn roll(
+        &self,
+        task: &Task<'_>,
+        from: &Configuration,
+        to: &Target<'_>,
+        mut path: Option<&mut Path>,
+        context: &mut Context<'_>,
+    ) -> Result<Reached, CallError> {
         let Target::Transfer(to) = to else { return Err(wrong_target(ID, SLOT)) };
         if let Some(path) = path.as_deref_mut() {
             path.restart(from);
@@ -125,7 +141,6 @@ impl LocalPlanner for Rolling {
                 }
             }
         }
-        let stop = stop.map(|reason| context.reject(SLOT, reason));
         Ok(Reached { end: state.q, fraction: state.s, stop })
     }
 }
