@@ -5,7 +5,8 @@ use crate::outputs::OverwriteArgs;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
-/// Plans how a multi-fingered hand moves an object from a start to goals, by rolling it and by regrasping, and verifies the plan.
+/// Plans how a multi-fingered hand moves an object from a start to goals, by rolling it and by regrasping,
+/// and verifies the plan.
 #[derive(Debug, Parser)]
 #[command(
     name = "regrasp",
@@ -67,7 +68,8 @@ pub struct PlanArgs {
     /// Seed of all random choices: the same seed gives the same plan, on any number of threads.
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub seed: u64,
-    /// Choose plugins and settings that belong together, `paper` or `default`; `--use` and `--set` change them further.
+    /// Choose plugins and settings that belong together, `paper` or `default`; `--use` and `--set` change
+    /// them further.
     #[arg(long, value_name = "NAME")]
     pub preset: Option<String>,
     /// Fill a slot with another plugin; can be repeated.
@@ -95,14 +97,16 @@ pub struct PlanArgs {
     /// Keep the stable grasps of the manipulation graph in this file, `.json` or `.npz`.
     #[arg(long, value_name = "FILE")]
     pub grasps: Option<PathBuf>,
-    /// Write a page that plays the plan, beside the plan file or to a temporary place, and open it in the browser.
+    /// Write a page that plays the plan, beside the plan file or to a temporary place, and open it in the
+    /// browser.
     #[arg(long)]
     pub view: bool,
-    /// The same with the manipulation graph: what was tried, failed, found and used; also where there is no plan.
+    /// The same with the manipulation graph: what was tried, failed, found and used; also where there is no
+    /// plan.
     #[arg(long)]
     pub view_graph: bool,
-    /// Hold every call of a plugin against the laws of its role; the first breach ends the run and names plugin, law and call. The run takes
-    /// several times as long.
+    /// Hold every call of a plugin against the laws of its role; the first breach ends the run and names
+    /// plugin, law and call. The run takes several times as long.
     #[arg(long)]
     pub audit: bool,
     /// Audit, and write what broke a law to this file: the call with its input, and the whole problem.

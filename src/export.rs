@@ -32,7 +32,8 @@ pub struct ExportArgs {
     pub output: PathBuf,
     #[command(flatten)]
     pub overwrite: OverwriteArgs,
-    /// Most normal force of one contact (N), 0.01 to 10000; by default what the plan claims to hold by, or else what the joints can.
+    /// Most normal force of one contact (N), 0.01 to 10000; by default what the plan claims to hold by, or
+    /// else what the joints can.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = grip())]
     pub grip: Option<f64>,
     /// Print one JSON object instead of text.

@@ -1,6 +1,7 @@
 //! The command line.
 //!
-//! Exit codes: 0 done; 2 bad input; 3 no plan within the budget; 4 a plan that does not verify, or a replay that does not arrive; 130 interrupted.
+//! Exit codes: 0 done; 2 bad input; 3 no plan within the budget; 4 a plan that does not verify, or a replay
+//! that does not arrive; 130 interrupted.
 
 mod args;
 mod compare;

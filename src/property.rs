@@ -79,7 +79,8 @@ impl<'a> Property<'a> {
         }
     }
 
-    /// The range as the schema states it, for a list that of its items; the empty text where it states no upper end.
+    /// The range as the schema states it, for a list that of its items; the empty text where it states no
+    /// upper end.
     pub fn range(self) -> String {
         let own = self.items().filter(|_| self.value.get("maximum").is_none()).map(Self::range);
         if let Some(range) = own.filter(|range| !range.is_empty()) {

@@ -22,7 +22,8 @@ pub struct ReplayArgs {
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub json: bool,
-    /// Write the JSON object to this file, with the object's pose at every state of the plan; `-` is standard output.
+    /// Write the JSON object to this file, with the object's pose at every state of the plan; `-` is standard
+    /// output.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -33,17 +34,20 @@ pub struct ReplayArgs {
     /// Multiply the simulated mass by this, up to 1000; the forces are chosen for the plan's own.
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0, value_parser = number::<0, 1000>)]
     pub mass_scale: f64,
-    /// Multiply the motors' stiffness by this, up to 1000; at 1 it is 10 N·m/rad, or 1000 N/m in prismatic joints.
+    /// Multiply the motors' stiffness by this, up to 1000; at 1 it is 10 N·m/rad, or 1000 N/m in prismatic
+    /// joints.
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 1.0, value_parser = number::<0, 1000>)]
     pub stiffness_scale: f64,
-    /// Multiply the plan's times by this, 0.1 to 100: plans are as fast as the joints can be, and grips balance the weight alone.
+    /// Multiply the plan's times by this, 0.1 to 100: plans are as fast as the joints can be, and grips
+    /// balance the weight alone.
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 2.0, value_parser = number::<0, 100>)]
     pub slowdown: f64,
-    /// Most normal force of one contact (N); by default what the plan claims to hold by, or else what the joints can.
+    /// Most normal force of one contact (N); by default what the plan claims to hold by, or else what the
+    /// joints can.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = number::<0, 10_000>)]
     pub grip: Option<f64>,
-    /// Replay in many worlds instead of one, friction, mass, stiffness and slowdown other than planned, and hold what arrives against what the plan
-    /// promises.
+    /// Replay in many worlds instead of one, friction, mass, stiffness and slowdown other than planned, and
+    /// hold what arrives against what the plan promises.
     #[arg(long, conflicts_with_all = ["output", "friction_scale", "mass_scale", "stiffness_scale", "slowdown"])]
     pub sweep: bool,
     /// Gravity in the hand's frame (m/s²), such as 0,0,9.81; by default the scenario's.

@@ -136,7 +136,8 @@ impl Summary<'_> {
         text + &self.remarks()
     }
 
-    /// What the verifier could not check although it found nothing wrong, such as the cones of a contact model that it does not know.
+    /// What the verifier could not check although it found nothing wrong, such as the cones of a contact
+    /// model that it does not know.
     fn remarks(&self) -> String {
         let checks = self.run.verdict.iter().flat_map(|verdict| &verdict.checks);
         // Other notes belong to a place in the plan.

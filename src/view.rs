@@ -60,8 +60,9 @@ fn write_page(plan: &Plan, extras: &Extras, output: &Path) -> Result<usize, Stri
     Ok(page.len())
 }
 
-/// What `plan --view` and `--view-graph` do after a run: a page beside the plan file, else in a folder for temporary files, opened where
-/// there is a browser. Where it is goes to standard error: standard output is the report's.
+/// What `plan --view` and `--view-graph` do after a run: a page beside the plan file, else in a folder for
+/// temporary files, opened where there is a browser. Where it is goes to standard error: standard output is
+/// the report's.
 pub fn show_run(args: &PlanArgs, setup: &Setup<'_>, run: &Run, saved: Option<&Path>) -> Result<(), Failure> {
     if !(args.view || args.view_graph) {
         return Ok(());

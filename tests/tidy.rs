@@ -1,4 +1,5 @@
-//! House rules that the compiler does not know: who may depend on whom, how long a file may be, what a library may not do.
+//! House rules that the compiler does not know: who may depend on whom, how long a file may be, what a
+//! library may not do.
 
 #[path = "tidy/cycles.rs"]
 mod cycles;

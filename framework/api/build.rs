@@ -1,4 +1,5 @@
-//! Tells `regrasp-abi` what only this crate's build knows: a hash of its sources, its features, nalgebra's version.
+//! Tells `regrasp-abi` what only this crate's build knows: a hash of its sources, its features, nalgebra's
+//! version.
 
 use std::env;
 use std::fs;
@@ -31,7 +32,8 @@ fn nalgebra(folder: &Path) -> String {
     pinned.expect("a manifest at or above this crate pins nalgebra with `=`")
 }
 
-/// The version in `nalgebra = { version = "=1.2.3", … }`, or in the table that cargo makes of it for a package.
+/// The version in `nalgebra = { version = "=1.2.3", … }`, or in the table that cargo makes of it for a
+/// package.
 fn pinned(manifest: &str) -> Option<String> {
     let mut lines = manifest.lines().map(str::trim);
     while let Some(line) = lines.next() {

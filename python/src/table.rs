@@ -48,7 +48,8 @@ pub struct Table {
     pub velocity: Vec<f64>,
     /// For each finger the force on the object in O (N); NaN where free or unknown; empty in plans without.
     pub force: Vec<f64>,
-    /// What the joints must give for these forces alone (N·m; N), as `q`, NaN where unknown; empty in plans without.
+    /// What the joints must give for these forces alone (N·m; N), as `q`, NaN where unknown; empty in plans
+    /// without.
     pub effort: Vec<f64>,
 }
 

@@ -143,8 +143,8 @@ pub fn beside<T: Send + 'static>(
     }
 }
 
-/// The answer of `job`. A thread that nobody waits for any more never comes back from here: the interpreter may be
-/// gone by then, and a thread that asks for it is ended through frames that cannot be.
+/// The answer of `job`. A thread that nobody waits for any more never comes back from here: the interpreter
+/// may be gone by then, and a thread that asks for it is ended through frames that cannot be.
 fn unless_abandoned<T>(watch: &Watch, job: impl FnOnce() -> T) -> std::thread::Result<T> {
     let answer = catch_unwind(AssertUnwindSafe(job));
     while watch.abandoned.load(Ordering::Relaxed) {

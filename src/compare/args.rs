@@ -6,7 +6,8 @@ use clap::Args;
 use regrasp::study::compare::{MOST_SEEDS, RunKey, Shard, Suite};
 use std::path::PathBuf;
 
-/// Compare combinations of plugins: every scenario, planned by every variant with every seed, every plan verified.
+/// Compare combinations of plugins: every scenario, planned by every variant with every seed, every plan
+/// verified.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 `regrasp scenarios` lists the built-in scenarios, `regrasp plugins` the slots, their plugins and settings.\n\n\
@@ -32,7 +33,8 @@ pub struct CompareArgs {
     /// Take scenarios and variants from a study file.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scenarios", "suite", "vary"])]
     pub study: Option<PathBuf>,
-    /// Compare these plugins in a slot, `ID` or `ID{KEY=VALUE,…}`, or these values of a setting; can be repeated.
+    /// Compare these plugins in a slot, `ID` or `ID{KEY=VALUE,…}`, or these values of a setting; can be
+    /// repeated.
     #[arg(long, value_name = "SLOT[.KEY]=A,B…")]
     pub vary: Vec<String>,
     /// Plan each problem with this many seeds [default: 20].
@@ -41,7 +43,8 @@ pub struct CompareArgs {
     /// The first of the seeds [default: 0].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 0, { u64::MAX - MOST_SEEDS }>)]
     pub first_seed: Option<u64>,
-    /// Choose plugins and settings of all variants that belong together, `paper` or `default`; `--use`, `--set` and `--vary` change them.
+    /// Choose plugins and settings of all variants that belong together, `paper` or `default`; `--use`,
+    /// `--set` and `--vary` change them.
     #[arg(long, value_name = "NAME")]
     pub preset: Option<String>,
     /// Fill a slot of all variants with another plugin; can be repeated.
@@ -64,8 +67,8 @@ pub struct CompareArgs {
     /// Make every run in a process of its own, so that one that ends its process is a row like any other.
     #[arg(long)]
     pub isolate: bool,
-    /// Hold every call of a plugin against the laws of its role; a run in which one is broken is a failed row. Runs take several times
-    /// as long, so their times say nothing.
+    /// Hold every call of a plugin against the laws of its role; a run in which one is broken is a failed
+    /// row. Runs take several times as long, so their times say nothing.
     #[arg(long)]
     pub audit: bool,
     /// Keep the plan of every run in `plans/SCENARIO/`.

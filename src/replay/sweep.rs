@@ -1,4 +1,5 @@
-//! `replay --sweep`: what arrives in worlds other than the one that was planned for, against what the plan promises.
+//! `replay --sweep`: what arrives in worlds other than the one that was planned for, against what the plan
+//! promises.
 
 use super::ReplayArgs;
 use super::simulated::Told;
@@ -20,7 +21,8 @@ struct World {
     arrives: bool,
 }
 
-/// Replays the plan in every world, friction and mass with each stiffness and slowdown, and tells what arrives.
+/// Replays the plan in every world, friction and mass with each stiffness and slowdown, and tells what
+/// arrives.
 pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
     let plan = &regrasp::plan::read(&args.plan).map_err(Failure::refused)?;
     let holds = plan.certificate.as_ref().and_then(|certificate| certificate.holds.as_ref());
@@ -56,7 +58,8 @@ fn pairs<'a>(a: &'a [f64], b: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + '
     a.iter().flat_map(move |&a| b.iter().map(move |&b| (a, b)))
 }
 
-/// Whether the certificate covers this friction and mass, each by itself: less friction and more mass at once it does not speak of.
+/// Whether the certificate covers this friction and mass, each by itself: less friction and more mass at once
+/// it does not speak of.
 fn promises(holds: &Holds, plan: &Plan, args: &ReplayArgs) -> bool {
     let object = &plan.scenario.problem.object;
     let alone = args.friction_scale == 1.0 || args.mass_scale == 1.0;

@@ -1,8 +1,9 @@
 //! The guard of the services: what plugins may ask of the framework.
 //!
-//! A plugin that asks for finger 9 makes the framework panic while the plugin calls it. Were the plugin in a library of its own, the panic
-//! could not cross it, and the process would be aborted. So the framework catches it on its own side: the call gets a harmless
-//! value, and the panic becomes the thread's fault ([`regrasp_api::report_fault`]).
+//! A plugin that asks for finger 9 makes the framework panic while the plugin calls it. Were the plugin in a
+//! library of its own, the panic could not cross it, and the process would be aborted. So the framework
+//! catches it on its own side: the call gets a harmless value, and the panic becomes the thread's fault
+//! ([`regrasp_api::report_fault`]).
 
 use crate::guard::{Guard, caught};
 use regrasp_api::{

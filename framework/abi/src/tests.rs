@@ -143,7 +143,8 @@ fn every_function_of_an_entry_is_guarded() {
     assert_eq!(take_fault(), Some(panicked("no cone")));
 }
 
-/// A method that a trait provides and a guard does not pass on would run the provided code in place of the plugin's own, silently.
+/// A method that a trait provides and a guard does not pass on would run the provided code in place of the
+/// plugin's own, silently.
 #[test]
 fn guards_pass_on_every_method_of_every_trait() {
     let methods = |text: &'static str, from: &str| -> Vec<&'static str> {

@@ -2,7 +2,8 @@
 
 use crate::{CallError, Figure, Random, Reason, Slot, pending_fault};
 
-/// Whether the run should stop now: a deadline, Ctrl-C. The command line implements it; libraries own no clock.
+/// Whether the run should stop now: a deadline, Ctrl-C. The command line implements it; libraries own no
+/// clock.
 pub trait Interrupt: Sync {
     /// True once the run should end. Called often (every 10 to 100 µs); must be cheap.
     fn interrupted(&self) -> bool;
@@ -20,8 +21,9 @@ impl Interrupt for Uninterrupted {
 
 /// Counts of calls and of rejections by cause, for each slot, and the figures that plugins noted.
 ///
-/// A plugin counts its own calls, first thing ([`Context::count_call`] with its slot), so that every caller is counted and none
-/// twice. What is handed no context counts nothing: contact models, and all of a surface but `geodesic`.
+/// A plugin counts its own calls, first thing ([`Context::count_call`] with its slot), so that every caller
+/// is counted and none twice. What is handed no context counts nothing: contact models, and all of a surface
+/// but `geodesic`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
     calls: [u64; Slot::ALL.len()],
@@ -105,14 +107,16 @@ impl<'a> Context<'a> {
         Self { random, tally: Tally::default(), interrupt }
     }
 
-    /// A context of its own with the same random stream and interrupt, and empty counts: for a call that is to be made as if this were its.
+    /// A context of its own with the same random stream and interrupt, and empty counts: for a call that is
+    /// to be made as if this were its.
     #[must_use]
     pub fn twin(&self) -> Self {
         Self::new(self.random.clone(), self.interrupt)
     }
 
-    /// Ends the call with [`CallError::Interrupted`] where the run should stop, or with the panic of a plugin that this call asked for a
-    /// value and that could not return it as an error. Call it once per step of a long loop.
+    /// Ends the call with [`CallError::Interrupted`] where the run should stop, or with the panic of a plugin
+    /// that this call asked for a value and that could not return it as an error. Call it once per step of a
+    /// long loop.
     pub fn proceed(&self) -> Result<(), CallError> {
         if let Some(fault) = pending_fault() {
             return Err(fault);
@@ -131,16 +135,19 @@ impl<'a> Context<'a> {
         reason
     }
 
-    /// Counts one "no" of the plugin in `slot` for a cause that only the plugin knows: as [`Reason::Other`], and under the plugin's own word.
+    /// Counts one "no" of the plugin in `slot` for a cause that only the plugin knows: as [`Reason::Other`],
+    /// and under the plugin's own word.
     pub fn reject_for(&mut self, slot: Slot, word: &'static str) -> Reason {
         self.note(slot, word, 1.0);
         self.reject(slot, Reason::Other)
     }
 
-    /// Notes a figure of the plugin in `slot` under a name of its own, such as `edge_distance_m`: its count, mean, least and largest value
-    /// stand in the plan file and in a study's tables. A value that is not finite is left out.
+    /// Notes a figure of the plugin in `slot` under a name of its own, such as `edge_distance_m`: its count,
+    /// mean, least and largest value stand in the plan file and in a study's tables. A value that is not
+    /// finite is left out.
     ///
-    /// A counter notes 1. Results that are thrown away take their notes with them, so that figures do not depend on the threads.
+    /// A counter notes 1. Results that are thrown away take their notes with them, so that figures do not
+    /// depend on the threads.
     pub fn note(&mut self, slot: Slot, name: &'static str, value: f64) {
         if value.is_finite() {
             self.tally.note(slot, name, Figure::one(value));

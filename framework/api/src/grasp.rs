@@ -9,16 +9,16 @@ use std::borrow::Cow;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cone<'a> {
     /// |f_t|²/μ² + m²/γ² ≤ f_n²: Coulomb friction with coefficient `mu` ≥ 0 and, where the torsional radius `gamma` ≥ 0
-    /// (m) is positive, a torque m about the normal. `gamma = 0` is a point contact with friction, `mu = gamma = 0` a
-    /// frictionless point.
+    /// (m) is positive, a torque m about the normal. `gamma = 0` is a point contact with friction,
+    /// `mu = gamma = 0` a frictionless point.
     Elliptic {
         /// Coefficient of friction, no unit.
         mu: f64,
         /// Torsional friction radius (m).
         gamma: f64,
     },
-    /// The cone spanned by edges in the contact frame, each with unit normal component: lent by the model that has them ready, or made
-    /// for this contact (`Cone::Polyhedral(edges.into())`).
+    /// The cone spanned by edges in the contact frame, each with unit normal component: lent by the model
+    /// that has them ready, or made for this contact (`Cone::Polyhedral(edges.into())`).
     Polyhedral(Cow<'a, [ConeEdge]>),
 }
 
@@ -26,12 +26,13 @@ impl Cone<'_> {
     /// A frictionless contact: a force along the normal and nothing else.
     pub const FRICTIONLESS: Cone<'static> = Cone::Elliptic { mu: 0.0, gamma: 0.0 };
 
-    /// A cone of two coefficients of friction, for contacts with a grain: `mu[0]` along the tangential part of `grain_O` (a vector in O,
-    /// of any length), `mu[1]` across it, and the torsional radius `gamma` (m), for the *outward* unit normal `n_O`.
+    /// A cone of two coefficients of friction, for contacts with a grain: `mu[0]` along the tangential part
+    /// of `grain_O` (a vector in O, of any length), `mu[1]` across it, and the torsional radius `gamma` (m),
+    /// for the *outward* unit normal `n_O`.
     ///
-    /// It is the polyhedron of [`GRAIN_EDGES`] edges inscribed in the elliptic cone, in each of five planes of torsion where `gamma` is
-    /// positive: nowhere wider, and at most 2 % narrower without torsion, 10 % with it. A grain along the normal has no direction: then
-    /// the smaller coefficient counts all round.
+    /// It is the polyhedron of [`GRAIN_EDGES`] edges inscribed in the elliptic cone, in each of five planes
+    /// of torsion where `gamma` is positive: nowhere wider, and at most 2 % narrower without torsion, 10 %
+    /// with it. A grain along the normal has no direction: then the smaller coefficient counts all round.
     pub fn grained(n_O: &Vec3, grain_O: &Vec3, mu: [f64; 2], gamma: f64) -> Cone<'static> {
         let inward = -n_O;
         let [t1, t2] = tangents(&inward);
@@ -55,7 +56,8 @@ impl Cone<'_> {
         Cone::Polyhedral(edges.into())
     }
 
-    /// The wrenches of the cone that have no torque about the normal: what a contact transmits while it may spin.
+    /// The wrenches of the cone that have no torque about the normal: what a contact transmits while it may
+    /// spin.
     ///
     /// Exact: the slice of a polyhedral cone is spanned where segments between its edges cross torsion zero.
     #[must_use]
@@ -91,7 +93,8 @@ impl Cone<'_> {
 /// How many edges [`Cone::grained`] has in a plane.
 pub const GRAIN_EDGES: usize = 16;
 
-/// The tangents that edges of polyhedral cones are given along, for the *inward* unit normal `n`: t1 = [`any_orthogonal`]`(n)`, t2 = n × t1.
+/// The tangents that edges of polyhedral cones are given along, for the *inward* unit normal `n`: t1 =
+/// [`any_orthogonal`]`(n)`, t2 = n × t1.
 pub fn tangents(n: &Vec3) -> [Vec3; 2] {
     let t1 = any_orthogonal(n);
     [t1, n.cross(&t1)]
@@ -160,7 +163,8 @@ impl<'a> Grasp<'a> {
         self.count += 1;
     }
 
-    /// Adds a contact with what its finger's joints can do there; either all contacts of a grasp have that or none has.
+    /// Adds a contact with what its finger's joints can do there; either all contacts of a grasp have that or
+    /// none has.
     pub fn push_bounded(&mut self, contact: GraspContact<'a>, efforts: EffortBounds) {
         debug_assert_eq!(self.efforts.len(), usize::from(self.count));
         self.efforts.push(efforts);
@@ -193,7 +197,8 @@ impl<'a> Grasp<'a> {
 
 /// A small memory between calls along one path: it may change a call's cost, never its verdict.
 ///
-/// The caller owns it, keeps one for each purpose and resets it with each path; what the numbers mean is the plugin's.
+/// The caller owns it, keeps one for each purpose and resets it with each path; what the numbers mean is the
+/// plugin's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hint {
     /// What the numbers are, as the plugin likes; 0 means "nothing known".

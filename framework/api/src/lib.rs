@@ -9,11 +9,12 @@
 //! - [`LocalPlanner`]: connects two configurations by sliding, rolling or regrasping;
 //! - [`GraphStrategy`]: what to do next with the manipulation graph.
 //!
-//! A call is handed the immutable [`Task`] and a mutable [`Context`] (random stream, budget, counts); [`Hand`] and [`Clearance`] are services
-//! that it may ask. All quantities are in SI units; `X_HO` is the pose of frame O in frame H (see [`Pose`]).
+//! A call is handed the immutable [`Task`] and a mutable [`Context`] (random stream, budget, counts);
+//! [`Hand`] and [`Clearance`] are services that it may ask. All quantities are in SI units; `X_HO` is the
+//! pose of frame O in frame H (see [`Pose`]).
 //!
-//! A plugin is a type that implements its role, and an [`Entry`] that says how it is called, which settings it takes and how it is built. This
-//! is a whole one:
+//! A plugin is a type that implements its role, and an [`Entry`] that says how it is called, which settings
+//! it takes and how it is built. This is a whole one:
 //!
 //! ```
 //! use regrasp_api::{

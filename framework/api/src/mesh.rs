@@ -137,7 +137,8 @@ pub struct MassProperties {
 }
 
 impl Mesh {
-    /// Builds the topology of `vertices` (m, in the object's frame) and refuses what is not a closed, outward, manifold mesh.
+    /// Builds the topology of `vertices` (m, in the object's frame) and refuses what is not a closed,
+    /// outward, manifold mesh.
     pub fn new(vertices: Vec<Vec3>, facets: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         check_indices(&vertices, &facets)?;
         let normals = normals(&vertices, &facets)?;
@@ -178,7 +179,8 @@ impl Mesh {
         (b - a).cross(&(c - a)).norm() / 2.0
     }
 
-    /// Whether no edge is concave by more than rounding (1e-9 rad) and every vertex lies below every facet's neighbour planes.
+    /// Whether no edge is concave by more than rounding (1e-9 rad) and every vertex lies below every facet's
+    /// neighbour planes.
     pub fn is_locally_convex(&self) -> bool {
         self.neighbors.iter().flatten().all(|neighbor| neighbor.bend > -1e-9)
     }
@@ -190,8 +192,8 @@ impl Mesh {
 
     /// Volume, centre of mass and inertia of the enclosed solid, exact up to rounding.
     ///
-    /// Sum over the tetrahedra between the centroid of the vertices and each facet (Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia
-    /// tensor", J. Math. Stat. 2004).
+    /// Sum over the tetrahedra between the centroid of the vertices and each facet (Tonon, "Explicit exact
+    /// formulas for the 3-D tetrahedron inertia tensor", J. Math. Stat. 2004).
     pub fn mass_properties(&self) -> MassProperties {
         let origin = self.vertices.iter().sum::<Vec3>() / self.vertices.len() as f64;
         let (mut volume, mut moment, mut second) = (0.0, Vec3::zeros(), Mat3::zeros());

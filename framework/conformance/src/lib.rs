@@ -1,4 +1,5 @@
-//! The conformance kit: the laws that make plugins of one role interchangeable, as checks that any plugin can be put through.
+//! The conformance kit: the laws that make plugins of one role interchangeable, as checks that any plugin can
+//! be put through.
 //!
 //! An author calls it from one test file of the plugin's crate:
 //!
@@ -9,9 +10,10 @@
 //!
 //! or looks at the report of one entry: `regrasp_conformance::check(&ENTRY).assert_passes()`.
 //!
-//! The kit names no plugin. What a role needs of the others it has in [`reference`](mod@reference): small, slow implementations that share no code
-//! with the built-in plugins. [`checks`] lists every check of a role with the reason for it; the names are stable. Each check has a *liar*
-//! among the kit's own tests: a plugin with one deliberate fault, which that check and no other catches.
+//! The kit names no plugin. What a role needs of the others it has in [`reference`](mod@reference): small,
+//! slow implementations that share no code with the built-in plugins. [`checks`] lists every check of a role
+//! with the reason for it; the names are stable. Each check has a *liar* among the kit's own tests: a plugin
+//! with one deliberate fault, which that check and no other catches.
 
 mod calls;
 mod entry;
@@ -70,8 +72,8 @@ pub fn registered() -> Vec<&'static Entry> {
     entries
 }
 
-/// Checks every registered plugin, and says in a line each how many checks were made and which were not; panics with the reports of those
-/// that fail, or if none is registered.
+/// Checks every registered plugin, and says in a line each how many checks were made and which were not;
+/// panics with the reports of those that fail, or if none is registered.
 pub fn assert_registered_conform() -> String {
     let reports: Vec<Report> = registered().into_iter().map(check).collect();
     assert!(!reports.is_empty(), "no plugin is registered: write `use the_crate as _;`");

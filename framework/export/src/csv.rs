@@ -3,7 +3,8 @@
 use crate::table::Row;
 use crate::{File, Scene};
 
-/// One file: columns in the order of [`head`]; a cell is empty where there is nothing to say, such as the contact of a free finger.
+/// One file: columns in the order of [`head`]; a cell is empty where there is nothing to say, such as the
+/// contact of a free finger.
 pub(crate) fn files(scene: &Scene<'_>, stem: &str) -> Vec<File> {
     let mut table = Table::new(&head(scene));
     for row in scene.rows() {

@@ -1,8 +1,9 @@
 //! Plans in the formats of other programs.
 //!
-//! [`Scene::new`] prepares a plan, [`Scene::export`] gives the files of one [`Format`] as bytes; who calls writes them. Lengths are metres, angles radians,
-//! frames those of the plan: H is the hand's, O the object's. A motion's states are exported as they are: between two of them joints and
-//! position move linearly, orientation by slerp.
+//! [`Scene::new`] prepares a plan, [`Scene::export`] gives the files of one [`Format`] as bytes; who calls
+//! writes them. Lengths are metres, angles radians, frames those of the plan: H is the hand's, O the
+//! object's. A motion's states are exported as they are: between two of them joints and position move
+//! linearly, orientation by slerp.
 
 mod csv;
 mod error;

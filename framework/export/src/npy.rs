@@ -1,7 +1,7 @@
 //! The motion as NumPy arrays in one uncompressed archive.
 //!
-//! The array format is version 1.0 of NumPy's own specification (numpy.lib.format): a magic number, a header in Python's syntax, the values
-//! in row-major order.
+//! The array format is version 1.0 of NumPy's own specification (numpy.lib.format): a magic number, a header
+//! in Python's syntax, the values in row-major order.
 
 use crate::table::{Row, Touch};
 use crate::{ExportError, File, Scene};
@@ -9,7 +9,8 @@ use regrasp_api::Vec3;
 use std::io::{Cursor, Write};
 use zip::write::SimpleFileOptions;
 
-/// One archive. Let T, F and J be the numbers of states, fingers and joints; what does not exist is NaN, or -1 among whole numbers.
+/// One archive. Let T, F and J be the numbers of states, fingers and joints; what does not exist is NaN, or
+/// -1 among whole numbers.
 pub(crate) fn files(scene: &Scene<'_>, stem: &str) -> Result<Vec<File>, ExportError> {
     let mut archive = Archive::new();
     motion(scene, &mut archive)?;
@@ -124,7 +125,8 @@ impl Archive {
     }
 }
 
-/// Everything before the values: magic number, version 1.0, length, description; padded so that the values begin at a multiple of 64 bytes.
+/// Everything before the values: magic number, version 1.0, length, description; padded so that the values
+/// begin at a multiple of 64 bytes.
 fn header(kind: &str, shape: &[usize]) -> Vec<u8> {
     let shape: String = shape.iter().map(|length| format!("{length}, ")).collect();
     let text = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}), }}", shape.trim_end());

@@ -17,7 +17,8 @@ pub struct Scene<'a> {
     pub(crate) names: Names,
     pub(crate) forces: Forces,
     pub(crate) solids: Solids,
-    /// For each finger and joint the pose of the joint's frame, at position 0, in the frame of the link before (H for the first).
+    /// For each finger and joint the pose of the joint's frame, at position 0, in the frame of the link
+    /// before (H for the first).
     pub(crate) origins: Vec<Vec<Pose>>,
 }
 
@@ -27,7 +28,8 @@ impl<'a> Scene<'a> {
         Self::with_grip(plan, None)
     }
 
-    /// The same with at most this normal force (N, 0.01 to 1e4) at each contact; what the plan claims to hold by, or else what the joints can, where `None`.
+    /// The same with at most this normal force (N, 0.01 to 1e4) at each contact; what the plan claims to hold
+    /// by, or else what the joints can, where `None`.
     pub fn with_grip(plan: &'a Plan, grip: Option<f64>) -> Result<Self, ExportError> {
         let problem = &plan.scenario.problem;
         let hand = ChainHand::new(problem.hand.clone())?;

@@ -1,7 +1,7 @@
 //! Hand and object as URDF, with their meshes and the trajectory beside them.
 //!
-//! URDF has no capsules: one is a cylinder and two balls. A half-space is a slab. Plans know no masses of links, which simulators want: every
-//! link gets [`LINK_MASS`].
+//! URDF has no capsules: one is a cylinder and two balls. A half-space is a slab. Plans know no masses of
+//! links, which simulators want: every link gets [`LINK_MASS`].
 
 use crate::names::{OBJECT, ROOT, file_stem};
 use crate::solid::{Piece, SLAB, Solid};

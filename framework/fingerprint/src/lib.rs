@@ -1,7 +1,8 @@
 //! A hash of Rust sources that tells apart what two separately built binaries must have in common.
 //!
-//! It covers every token: signatures, layouts, bodies. Comments, documentation, layout of the text and tests do not count, so that a
-//! plugin built before a typo was mended still loads. Build scripts of `regrasp-api` and `regrasp-abi` use it.
+//! It covers every token: signatures, layouts, bodies. Comments, documentation, layout of the text and tests
+//! do not count, so that a plugin built before a typo was mended still loads. Build scripts of `regrasp-api`
+//! and `regrasp-abi` use it.
 
 mod fnv;
 

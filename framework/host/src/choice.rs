@@ -64,7 +64,8 @@ impl Choices {
         table.insert(key.to_owned(), value);
     }
 
-    /// Takes one setting back to the plugin's default; a dot in `key` leads into a table, which goes too once it is empty.
+    /// Takes one setting back to the plugin's default; a dot in `key` leads into a table, which goes too once
+    /// it is empty.
     pub fn unset(&mut self, slot: Slot, key: &str) {
         unset(&mut self.choices[slot as usize].settings, key);
     }

@@ -17,7 +17,8 @@ macro_rules! plugin_set {
         }
 
         impl PluginSet {
-            /// Builds the chosen plugins for a hand and an object, and refuses a hand with too few fingers for the contact model.
+            /// Builds the chosen plugins for a hand and an object, and refuses a hand with too few fingers
+            /// for the contact model.
             pub fn build(registry: &Registry, choices: &Choices, parts: &Parts<'_>) -> Result<Self, HostError> {
                 let shelf = RegistryShelf { registry };
                 let parts = &Parts { plugins: &shelf, ..*parts };

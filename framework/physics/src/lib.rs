@@ -4,12 +4,14 @@
 //! [`grasp_forces`] needs no simulator; everything else is behind the feature `rapier`.
 //!
 //! What is simulated:
-//! - each finger as a chain of bodies with the hand's joint axes, in reduced coordinates (no joint can come apart); each joint driven by a motor
-//!   with a stiffness and damping whose effort saturates at the joint's limit;
-//! - the fingertips as balls on the object's mesh, one contact each at the closest point, with Coulomb friction; the object with its mass, inertia
-//!   and gravity;
-//! - the control: positions and speeds of the plan, and fed forward the efforts of a grip (q* = q + K⁻¹ Jᵀ f). Nothing looks at
-//!   where the object is: it stays on its path because the grip's stiffness keeps it there.
+//! - each finger as a chain of bodies with the hand's joint axes, in reduced coordinates (no joint can come
+//!   apart); each joint driven by a motor with a stiffness and damping whose effort saturates at the joint's
+//!   limit;
+//! - the fingertips as balls on the object's mesh, one contact each at the closest point, with Coulomb
+//!   friction; the object with its mass, inertia and gravity;
+//! - the control: positions and speeds of the plan, and fed forward the efforts of a grip (q* = q + K⁻¹ Jᵀ
+//!   f). Nothing looks at where the object is: it stays on its path because the grip's stiffness keeps it
+//!   there.
 //!
 //! What is left out: weight of the links (the motors are taken to hold it), true masses of the links (nominal
 //! ones), shapes of the links (plans are free of collisions), torsional friction (rapier's contacts have

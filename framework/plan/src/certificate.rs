@@ -10,7 +10,8 @@ pub struct Place {
     /// The segment, counted from 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segment: Option<usize>,
-    /// The state within the segment, counted from 0; the last one before the place where that lies between two.
+    /// The state within the segment, counted from 0; the last one before the place where that lies between
+    /// two.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub state: Option<usize>,
     /// Time from the motion's start (s).
@@ -44,20 +45,23 @@ pub struct Extreme {
     pub place: Place,
 }
 
-/// The verifier's figures on a whole plan. They speak of the facets of the object's mesh, the plan's true surface.
+/// The verifier's figures on a whole plan. They speak of the facets of the object's mesh, the plan's true
+/// surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlanCertificate {
-    /// Certified lower bound of the smallest closure margin over all states: the largest ball of wrenches about the claimed centre, torques divided
-    /// by the claimed length, that the contacts resist with unit total normal force (Ferrari and Canny, "Planning optimal grasps", ICRA 1992, with
-    /// the sum of the normal forces bounded). Absent where stability was not checked.
+    /// Certified lower bound of the smallest closure margin over all states: the largest ball of wrenches
+    /// about the claimed centre, torques divided by the claimed length, that the contacts resist with unit
+    /// total normal force (Ferrari and Canny, "Planning optimal grasps", ICRA 1992, with the sum of the
+    /// normal forces bounded). Absent where stability was not checked.
     pub closure_margin: Option<Extreme>,
     /// Smallest distance of two bodies that may not touch (m). Absent where no two such bodies exist.
     pub clearance: Option<Extreme>,
-    /// Largest net slip of a contact from its finger's touch-down to its lift (m), sampled at ten times the plan's resolution. Absent without
-    /// transfers.
+    /// Largest net slip of a contact from its finger's touch-down to its lift (m), sampled at ten times the
+    /// plan's resolution. Absent without transfers.
     pub slip: Option<Extreme>,
-    /// Largest distance between a holding fingertip and the surface (m), sampled likewise. Absent where no finger holds.
+    /// Largest distance between a holding fingertip and the surface (m), sampled likewise. Absent where no
+    /// finger holds.
     pub closure_residual: Option<Extreme>,
     /// What the grasps hold within the joints' efforts. Absent where the plan holds no forces.
     #[serde(default, skip_serializing_if = "Option::is_none")]

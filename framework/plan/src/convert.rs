@@ -10,7 +10,8 @@ use regrasp_api::{
 };
 use thiserror::Error;
 
-/// The facet of contacts that come from a file: a plan does not say which plugin's coordinates it was made with.
+/// The facet of contacts that come from a file: a plan does not say which plugin's coordinates it was made
+/// with.
 pub const UNKNOWN_FACET: u32 = u32::MAX;
 
 /// What is wrong with one state of a file.

@@ -38,13 +38,15 @@ pub struct Plan {
     pub object: Option<ObjectRecord>,
     /// What the plan claims of its contacts and grasps.
     pub claims: Claims,
-    /// For each goal that was reached, in turn: how many segments are done by then (0 where the start is the goal).
+    /// For each goal that was reached, in turn: how many segments are done by then (0 where the start is the
+    /// goal).
     pub goals_reached: Vec<usize>,
     /// What stopped the search before its end; absent where nothing did.
     pub stopped_by: Option<StoppedBy>,
     /// How the search went.
     pub statistics: Statistics,
-    /// What the plugins have to say of the plan, each by its slot: names and values of their own, which nothing checks.
+    /// What the plugins have to say of the plan, each by its slot: names and values of their own, which
+    /// nothing checks.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub notes: BTreeMap<Slot, PluginNotes>,
     /// What the verifier certifies; absent until it has.
@@ -120,16 +122,18 @@ pub struct StateRecord {
     pub object: PoseRecord,
     /// Joint positions (rad; m where prismatic): for each finger, base to tip.
     pub joints: Vec<Vec<f64>>,
-    /// Velocity of each joint (rad/s; m/s where prismatic), as `joints`; absent in plans of version 1. The cubic through positions and
-    /// velocities is what a trajectory controller plays.
+    /// Velocity of each joint (rad/s; m/s where prismatic), as `joints`; absent in plans of version 1. The
+    /// cubic through positions and velocities is what a trajectory controller plays.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocities: Option<Vec<Vec<f64>>>,
     /// For each finger its contact, or null where it does not hold the object.
     pub contacts: Vec<Option<ContactRecord>>,
-    /// For each contact its cone's number among `claims.contact.cones`; absent where all contacts share `claims.contact.cone`.
+    /// For each contact its cone's number among `claims.contact.cones`; absent where all contacts share
+    /// `claims.contact.cone`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cones: Option<Vec<Option<usize>>>,
-    /// For each finger the force that its contact exerts on the object, in O (N); null where it does not hold.
+    /// For each finger the force that its contact exerts on the object, in O (N); null where it does not
+    /// hold.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub forces: Option<Vec<Option<[f64; 3]>>>,
 }

@@ -20,7 +20,8 @@ pub struct Segment {
     pub states: Vec<Configuration>,
     /// Time of each state from the motion's start (s); empty until the motion is timed.
     pub times: Vec<f64>,
-    /// Joint velocities at each state (rad/s; m/s where prismatic); empty until the motion is timed, and in motions of plans of version 1.
+    /// Joint velocities at each state (rad/s; m/s where prismatic); empty until the motion is timed, and in
+    /// motions of plans of version 1.
     pub velocities: Vec<PerFinger<FingerJoints>>,
 }
 

@@ -32,8 +32,8 @@ impl From<&Mesh> for Facets {
     }
 }
 
-/// A twin of the object's surface, smooth at the scale of a fingertip: contacts live there. Clearance, mass and what may not be entered are
-/// those of the object's own surface.
+/// A twin of the object's surface, smooth at the scale of a fingertip: contacts live there. Clearance, mass
+/// and what may not be entered are those of the object's own surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSurface {

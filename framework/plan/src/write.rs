@@ -5,9 +5,11 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes a plan file: first under another name in the same folder, then, once all is on the disk, under its own.
+/// Writes a plan file: first under another name in the same folder, then, once all is on the disk, under its
+/// own.
 ///
-/// What is no regular file, such as a pipe or `/dev/stdout`, is written in place; a symbolic link keeps pointing to its file.
+/// What is no regular file, such as a pipe or `/dev/stdout`, is written in place; a symbolic link keeps
+/// pointing to its file.
 pub fn write(path: &Path, plan: &Plan) -> Result<(), WriteError> {
     if let Some(place) = not_finite(plan) {
         return Err(WriteError::NotFinite { place });
@@ -29,7 +31,8 @@ pub fn check_place(path: &Path) -> Result<(), WriteError> {
     match target(path)? {
         Target::Special => Ok(()),
         Target::File { folder, .. } => {
-            // The temporary file is named in the system's own message, which would not help: its kind says enough.
+            // The temporary file is named in the system's own message, which would not help: its kind says
+            // enough.
             let refused = |error: io::Error| write_error(io::Error::from(error.kind()), path);
             temporary(&folder).map(drop).map_err(refused)
         }
@@ -103,7 +106,8 @@ fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
     #[cfg(unix)]
     {
-        // As any new file, less what the user's mask takes away; the default of temporary files is for their owner alone.
+        // As any new file, less what the user's mask takes away; the default of temporary files is for their
+        // owner alone.
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }

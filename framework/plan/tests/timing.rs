@@ -57,8 +57,8 @@ fn strays(row: &Row, step: usize, q: &[f64]) -> f64 {
     (0..q.len() / 3).map(tip).fold(0.0, f64::max)
 }
 
-/// The largest velocity and acceleration as fractions of their limits, and the largest deviation (m), of what a controller plays at 1 kHz:
-/// by differences of the sampled positions alone.
+/// The largest velocity and acceleration as fractions of their limits, and the largest deviation (m), of what
+/// a controller plays at 1 kHz: by differences of the sampled positions alone.
 fn utilisation(motion: &Motion, hand: &dyn Hand) -> (f64, f64, f64) {
     let row = row(motion);
     assert!(row.t.windows(2).all(|pair| pair[1] > pair[0]), "times increase");

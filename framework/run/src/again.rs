@@ -1,4 +1,5 @@
-//! What is tried when a plan does not pass the verifier: that is a fault of the planner, and no reason to end without a plan.
+//! What is tried when a plan does not pass the verifier: that is a fault of the planner, and no reason to end
+//! without a plan.
 
 use regrasp_api::Problem;
 use regrasp_verify::Verdict;

@@ -1,5 +1,5 @@
-//! The main job as a library: a scenario file becomes a checked [`Scenario`](scenario::Scenario), that a [`Setup`] with its plugins
-//! built, and that a plan which was verified.
+//! The main job as a library: a scenario file becomes a checked [`Scenario`](scenario::Scenario), that a
+//! [`Setup`] with its plugins built, and that a plan which was verified.
 
 mod again;
 mod audit;

@@ -57,7 +57,8 @@ pub struct RunOptions<'a> {
 pub struct Run {
     /// The planner's own answer.
     pub outcome: Outcome,
-    /// What stopped the search before its end; absent where it came to an end of its own, with a plan or without.
+    /// What stopped the search before its end; absent where it came to an end of its own, with a plan or
+    /// without.
     pub stopped_by: Option<StoppedBy>,
     /// The plan as its file holds it, certificate included; absent where no goal was reached.
     pub plan: Option<Plan>,
@@ -70,7 +71,8 @@ pub struct Run {
 }
 
 impl Run {
-    /// Whether there is a plan and the verifier accepts it; a plan that reaches only some goals is judged by what it does.
+    /// Whether there is a plan and the verifier accepts it; a plan that reaches only some goals is judged by
+    /// what it does.
     pub fn is_verified(&self) -> bool {
         self.verdict.as_ref().is_some_and(|verdict| match self.outcome.status {
             Status::Solved => verdict.valid,
@@ -160,20 +162,22 @@ impl<'a> Setup<'a> {
     /// Plans with `solve`, which calls the planner with the request or with a changed one, and verifies.
     pub fn run_by(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Run, RunError> {
         let run = self.plan_and_verify(solve, options);
-        // A plugin that panicked outside the planner's own calls, say while cones were written down, spoils the whole.
+        // A plugin that panicked outside the planner's own calls, say while cones were written down, spoils
+        // the whole.
         match regrasp_api::take_fault() {
             Some(fault) => Err(RunError::Call(fault)),
             None => run,
         }
     }
 
-    /// Plans for one share of the friction after the other where `[hold]` asks for as little as can be: the last plan that comes
-    /// about is the one that needs least.
+    /// Plans for one share of the friction after the other where `[hold]` asks for as little as can be: the
+    /// last plan that comes about is the one that needs least.
     fn plan_and_verify(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Run, RunError> {
         let begin = options.clock.seconds();
         let mut best: Option<Run> = None;
         for problem in self.problems() {
-            // A smaller share of the friction is one more wish: where it does not come about, nothing is tried again for it.
+            // A smaller share of the friction is one more wish: where it does not come about, nothing is
+            // tried again for it.
             let tries = if best.is_none() { &TRIES[..] } else { &TRIES[..1] };
             let run = self.plan_until_verified(&problem, solve, options, tries)?;
             let good = run.outcome.status == Status::Solved && run.is_verified();
@@ -203,7 +207,8 @@ impl<'a> Setup<'a> {
         hold.friction_factor.shares().iter().map(planned).collect()
     }
 
-    /// Plans in one way after the other until the verifier accepts the plan; where it accepts none, the last one tells why.
+    /// Plans in one way after the other until the verifier accepts the plan; where it accepts none, the last
+    /// one tells why.
     fn plan_until_verified(
         &self,
         problem: &Problem,
@@ -289,7 +294,8 @@ impl<'a> Setup<'a> {
     }
 }
 
-/// The poses of start and goals; refuses those at which the object itself is in collision: no grasp could mend that.
+/// The poses of start and goals; refuses those at which the object itself is in collision: no grasp could
+/// mend that.
 fn poses(scenario: &Scenario, clearance: &SceneClearance) -> Result<Vec<Pose>, ScenarioError> {
     let problem = &scenario.problem;
     let start = ("start.pose".to_owned(), &problem.start.pose);

@@ -19,7 +19,8 @@ const CLOSURE: [&str; 4] = [
     "stability-test/wrench-ball",
 ];
 
-/// Checks the claims against the scenario: the contact model that was used, no more friction than the object has, the criterion of the test that was used, the object's own centre and length.
+/// Checks the claims against the scenario: the contact model that was used, no more friction than the object
+/// has, the criterion of the test that was used, the object's own centre and length.
 pub(crate) fn claims(plan: &Plan, object: &ObjectModel) -> Check {
     let mut gauge = Gauge::faults("claims");
     let mut fault = |note: String| gauge.fault(|| Place { note: Some(note), ..Default::default() });
@@ -86,7 +87,8 @@ fn wrong_cone(model: &str, cone: &ConeClaim, plan: &Plan, friction: f64) -> Opti
     }
 }
 
-/// What is wrong with the claimed criterion, if anything: it must be no weaker than what the scenario's test demands.
+/// What is wrong with the claimed criterion, if anything: it must be no weaker than what the scenario's test
+/// demands.
 fn wrong_criterion(plan: &Plan) -> Option<String> {
     let choice = plan.scenario.plugins.get(&Slot::StabilityTest);
     let id = choice.map_or("", |choice| choice.id.as_str());
@@ -115,7 +117,8 @@ fn wrong_criterion(plan: &Plan) -> Option<String> {
     }
 }
 
-/// What is wrong with the claim that a load is held: it must be no less than what the scenario's test and its `hold` ask for.
+/// What is wrong with the claim that a load is held: it must be no less than what the scenario's test and its
+/// `hold` ask for.
 fn wrong_holding(plan: &Plan, id: &str, load: &HoldLoad) -> Option<String> {
     if CLOSURE.contains(&id) || id == EQUILIBRIUM {
         return Some(format!("holding is claimed, the scenario's test is `{id}`"));

@@ -1,10 +1,12 @@
 //! Distances of all pairs that may not touch, exact where it counts and certified in between.
 //!
-//! A pair's distance changes no faster than its bodies move. So from one exact distance follows a lower bound for as long as the bodies have not
-//! moved by more than its excess over what matters: over the distance demanded, and over the smallest one found yet, which is to be reported
-//! exactly. Only where that bound is used up a new distance is computed. Between samples the bodies may move by m in sum: both ends together
-//! must be farther than m from touching, else the step is bisected (conservative advancement: Mirtich, "Impulse-based dynamic simulation of rigid body
-//! systems", PhD thesis, Berkeley 1996; Schwarzer, Saha, Latombe, "Exact collision checking of robot paths", WAFR 2002).
+//! A pair's distance changes no faster than its bodies move. So from one exact distance follows a lower bound
+//! for as long as the bodies have not moved by more than its excess over what matters: over the distance
+//! demanded, and over the smallest one found yet, which is to be reported exactly. Only where that bound is
+//! used up a new distance is computed. Between samples the bodies may move by m in sum: both ends together
+//! must be farther than m from touching, else the step is bisected (conservative advancement: Mirtich,
+//! "Impulse-based dynamic simulation of rigid body systems", PhD thesis, Berkeley 1996; Schwarzer, Saha,
+//! Latombe, "Exact collision checking of robot paths", WAFR 2002).
 
 use crate::hand::Chains;
 use crate::scene::Scene;
@@ -17,10 +19,11 @@ use nalgebra::Point3;
 use regrasp_api::{Body, BodyPair, MAX_FINGERS, Vec3};
 use regrasp_plan::{Extreme, Place};
 
-/// How often a step between samples is halved before the clearance there counts as not certified: what remains is a hundredth of the step.
+/// How often a step between samples is halved before the clearance there counts as not certified: what
+/// remains is a hundredth of the step.
 const HALVINGS: u32 = 7;
-/// How far below the smallest distance found the distance of a pair may be between samples (m): what the certificate gives away so that its
-/// figure is a bound over all times.
+/// How far below the smallest distance found the distance of a pair may be between samples (m): what the
+/// certificate gives away so that its figure is a bound over all times.
 const GRAIN: f64 = 1e-4;
 /// The same over the whole plan.
 const MOST_HALVINGS: usize = 100_000;
@@ -32,7 +35,8 @@ pub(crate) struct ClearanceCheck<'s> {
     gauge: Gauge,
     demanded: f64,
     smallest: f64,
-    /// For each pair a lower bound of its distance at the last state (m); minus infinity where nothing is known.
+    /// For each pair a lower bound of its distance at the last state (m); minus infinity where nothing is
+    /// known.
     lower: Vec<f64>,
     /// For each pair of object and segment where they were closest at their last exact distance, in O.
     nearest: Vec<Gap>,
@@ -83,8 +87,8 @@ impl<'s> ClearanceCheck<'s> {
         }
     }
 
-    /// Whether the pair may not touch in this segment: a fingertip that holds the object may, and the one that moves in a regrasp is looked at on
-    /// its own.
+    /// Whether the pair may not touch in this segment: a fingertip that holds the object may, and the one
+    /// that moves in a regrasp is looked at on its own.
     fn compared(&self, leg: &Leg<'_>, pair: usize) -> bool {
         let (a, b) = self.scene.pairs[pair];
         match (self.scene.bodies[a].body, self.scene.bodies[b].body) {
@@ -95,7 +99,8 @@ impl<'s> ClearanceCheck<'s> {
         }
     }
 
-    /// Takes in the step after `state`, sampled in `frames` ([`SAMPLES`] + 1 of them); `touches` are the contacts at the samples.
+    /// Takes in the step after `state`, sampled in `frames` ([`SAMPLES`] + 1 of them); `touches` are the
+    /// contacts at the samples.
     pub(crate) fn step(
         &mut self,
         leg: &Leg<'_>,
@@ -118,7 +123,8 @@ impl<'s> ClearanceCheck<'s> {
         }
     }
 
-    /// Carries a pair's bound from the sample before to `sample`, with a new distance where the bound is used up.
+    /// Carries a pair's bound from the sample before to `sample`, with a new distance where the bound is used
+    /// up.
     fn sample(
         &mut self,
         step: Step<'_, '_>,
@@ -150,7 +156,8 @@ impl<'s> ClearanceCheck<'s> {
         }
     }
 
-    /// Makes sure that the pair stays apart between two instants of a step, given as fraction and exact distance.
+    /// Makes sure that the pair stays apart between two instants of a step, given as fraction and exact
+    /// distance.
     fn certify(&mut self, step: Step<'_, '_>, from: (f64, f64), to: (f64, f64), depth: u32) {
         let bound = (from.1 + to.1 - step.motion * (to.0 - from.0)) / 2.0;
         if bound > self.target() {
@@ -174,7 +181,8 @@ impl<'s> ClearanceCheck<'s> {
         }
     }
 
-    /// What distances between samples are certified to exceed: what is demanded, and the smallest one found less [`GRAIN`].
+    /// What distances between samples are certified to exceed: what is demanded, and the smallest one found
+    /// less [`GRAIN`].
     pub(crate) fn target(&self) -> f64 {
         self.demanded.max(self.smallest - GRAIN)
     }
@@ -193,7 +201,8 @@ impl<'s> ClearanceCheck<'s> {
         self.gauge.note(distance, || Place { pair, ..place() });
     }
 
-    /// The closest pair of those compared at a state, with its exact distance (m), beside the moving fingertip of a regrasp and the object.
+    /// The closest pair of those compared at a state, with its exact distance (m), beside the moving
+    /// fingertip of a regrasp and the object.
     pub(crate) fn closest(&mut self, leg: &Leg<'_>, frames: &Frames) -> Option<(f64, BodyPair)> {
         let mut closest: Option<(f64, BodyPair)> = None;
         for pair in 0..self.scene.pairs.len() {
@@ -238,8 +247,8 @@ impl<'s> ClearanceCheck<'s> {
         }
     }
 
-    /// A cheap lower bound of a pair's distance (m): balls around both, or a plane between object and segment.
-    /// Stops at the first above `floor`.
+    /// A cheap lower bound of a pair's distance (m): balls around both, or a plane between object and
+    /// segment. Stops at the first above `floor`.
     fn bound(&self, pair: usize, frames: &Frames, touches: &[Option<Touch>; MAX_FINGERS], floor: f64) -> f64 {
         let (a, b) = self.scene.pairs[pair];
         let (first, second) = (&self.scene.bodies[a], &self.scene.bodies[b]);
@@ -265,8 +274,8 @@ impl<'s> ClearanceCheck<'s> {
         bound
     }
 
-    /// A lower bound of all distances at all times, for the certificate: at samples none is smaller than the smallest found, and between them
-    /// none is more than [`GRAIN`] below it.
+    /// A lower bound of all distances at all times, for the certificate: at samples none is smaller than the
+    /// smallest found, and between them none is more than [`GRAIN`] below it.
     pub(crate) fn extreme(&self) -> Option<Extreme> {
         let certified = |worst: f64| (worst - GRAIN).max(worst.min(self.demanded));
         self.gauge.worst().map(|worst| Extreme { value: certified(worst), place: self.gauge.place().clone() })

@@ -1,4 +1,5 @@
-//! What happens at the contacts: closure, normals, slip by the claimed law, and whether the contact point moves continuously.
+//! What happens at the contacts: closure, normals, slip by the claimed law, and whether the contact point
+//! moves continuously.
 
 use crate::hand::Chains;
 use crate::scene::Scene;
@@ -48,8 +49,9 @@ struct Contact {
 }
 
 impl Contact {
-    /// How far (m, in O) the material point of the fingertip that is the contact at this instant slips while its link moves from `from` to `to`:
-    /// its displacement relative to the object, whose own points rest in O, along the tangent plane. The midpoint rule, second order.
+    /// How far (m, in O) the material point of the fingertip that is the contact at this instant slips while
+    /// its link moves from `from` to `to`: its displacement relative to the object, whose own points rest in
+    /// O, along the tangent plane. The midpoint rule, second order.
     fn slip(&self, from: &Pose, to: &Pose) -> Vec3 {
         let p_L = self.X_OL.inverse_transform_point(&Point3::from(self.p_OC));
         tangential(&(to * p_L - from * p_L), &self.n_O)
@@ -61,7 +63,8 @@ fn tangential(v: &Vec3, n: &Vec3) -> Vec3 {
 }
 
 impl Rolling {
-    /// How far (m) contact point or fingertip's centre are from where they began on the object, whichever is more.
+    /// How far (m) contact point or fingertip's centre are from where they began on the object, whichever is
+    /// more.
     fn strayed(&self) -> f64 {
         let (touch, p_OTip) = &self.first;
         (self.touch.p_OC - touch.p_OC).norm().max((self.p_OTip - p_OTip).norm())
@@ -145,7 +148,8 @@ impl<'s> ContactChecks<'s> {
         self.normals.note(angle.max((n_O.norm() - 1.0).abs()), place);
     }
 
-    /// Measures the slip since touch-down: what rolling adds up, or how far a fixed point has strayed from where it was then.
+    /// Measures the slip since touch-down: what rolling adds up, or how far a fixed point has strayed from
+    /// where it was then.
     fn follow(
         &mut self,
         finger: usize,
@@ -163,7 +167,8 @@ impl<'s> ContactChecks<'s> {
             self.slip.note(0.0, place);
             return;
         };
-        // Closest points of a convex surface move no farther than the centre does: more is a jump over a concave edge.
+        // Closest points of a convex surface move no farther than the centre does: more is a jump over a
+        // concave edge.
         let step = (p_OTip - now.p_OTip).norm();
         self.jumps.note(((touch.p_OC - now.touch.p_OC).norm() - step).max(0.0), &place);
         if sample == 0 {
@@ -185,7 +190,8 @@ impl<'s> ContactChecks<'s> {
         self.rolling[finger] = Some(now);
     }
 
-    /// Takes in the end of a regrasp: where the finger was lifted, its slip counts anew; else it has slid to where it is now.
+    /// Takes in the end of a regrasp: where the finger was lifted, its slip counts anew; else it has slid to
+    /// where it is now.
     pub(crate) fn moved(&mut self, leg: &Leg<'_>, finger: usize, lifted: bool, frames: &Frames) {
         let last = leg.states.len() - 1;
         if lifted {

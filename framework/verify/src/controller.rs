@@ -1,8 +1,10 @@
 //! Whether the cubic that a trajectory controller plays stays close to the motion that the plan means.
 //!
-//! Over a step the plan means a straight line in joint space. The cubic's progress along that line is its best fit to the joints; how far a
-//! fingertip is then from where the line has it must stay within half of the closure tolerance. A bound over all times comes first: the part of each
-//! joint's cubic that is not progress, times how far the joint can move the tip. Only where that does not do, the tip is placed at samples.
+//! Over a step the plan means a straight line in joint space. The cubic's progress along that line is its
+//! best fit to the joints; how far a fingertip is then from where the line has it must stay within half of
+//! the closure tolerance. A bound over all times comes first: the part of each joint's cubic that is not
+//! progress, times how far the joint can move the tip. Only where that does not do, the tip is placed at
+//! samples.
 
 use crate::hand::Chains;
 use crate::scene::Scene;
@@ -67,9 +69,9 @@ impl<'s> Step<'s> {
 
     /// How far any tip can be from the line (m), at any time; infinite where the progress may leave the step.
     ///
-    /// What is not progress is f (1 - f)² e0 - f² (1 - f) e1 with the slopes' parts e0, e1 across the change: at most 4/27 (|e0| + |e1|), and
-    /// the progress stays within the step where both its slopes lie between 0 and 3 (Fritsch and Carlson, "Monotone piecewise cubic
-    /// interpolation", SINUM 1980).
+    /// What is not progress is f (1 - f)² e0 - f² (1 - f) e1 with the slopes' parts e0, e1 across the change:
+    /// at most 4/27 (|e0| + |e1|), and the progress stays within the step where both its slopes lie between 0
+    /// and 3 (Fritsch and Carlson, "Monotone piecewise cubic interpolation", SINUM 1980).
     fn bound(&self, hand: &Chains, scene: &Scene) -> f64 {
         if !self.along.iter().all(|a| (0.0..=3.0).contains(a)) {
             return f64::INFINITY;

@@ -109,8 +109,9 @@ impl Chain {
         }
     }
 
-    /// For each joint up to the one of `link`: how far (m) a point of that link can move for one unit of the joint, if it is within `reach` (m)
-    /// of the link's origin and prismatic joint j within `travel[j]` (m) of its zero.
+    /// For each joint up to the one of `link`: how far (m) a point of that link can move for one unit of the
+    /// joint, if it is within `reach` (m) of the link's origin and prismatic joint j within `travel[j]` (m)
+    /// of its zero.
     pub(crate) fn levers(&self, link: usize, reach: f64, travel: &[f64]) -> [f64; MAX_FINGER_JOINTS] {
         let mut levers = [0.0; MAX_FINGER_JOINTS];
         let mut distance = reach;
@@ -188,7 +189,8 @@ mod tests {
         let chain = Chain::new(&finger(), 0).unwrap();
         let mut frames = [Pose::identity(); 2];
         chain.frames(&[std::f64::consts::FRAC_PI_2, 0.1], &mut frames);
-        // About y by 90°, x becomes -z; the base turns the rest: 0.5 + 0.1 + 0.3 m straight down from the base.
+        // About y by 90°, x becomes -z; the base turns the rest: 0.5 + 0.1 + 0.3 m straight down from the
+        // base.
         let tip = frames[1] * nalgebra::Point3::from(chain.p_LTip);
         assert!((tip.coords - Vec3::new(1.0, 2.0, 3.0 - 0.9)).norm() < 1e-12, "{tip}");
     }

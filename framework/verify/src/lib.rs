@@ -1,8 +1,9 @@
 //! The independent verifier of plans: shares no checking code with planner and plugins.
 //!
-//! [`verify`] re-derives everything from the plan file alone: own forward kinematics, closure against the object's mesh, slip, limits, stability
-//! with its own proofs, distances by parry. It works at ten times the plan's resolution on the motion that the plan means (joints and
-//! position linear, orientation by slerp between states), and reports for each check the worst value, the limit and the place.
+//! [`verify`] re-derives everything from the plan file alone: own forward kinematics, closure against the
+//! object's mesh, slip, limits, stability with its own proofs, distances by parry. It works at ten times the
+//! plan's resolution on the motion that the plan means (joints and position linear, orientation by slerp
+//! between states), and reports for each check the worst value, the limit and the place.
 
 mod border;
 mod claims;

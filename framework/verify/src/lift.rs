@@ -1,4 +1,5 @@
-//! The moving fingertip of a regrasp: it touches the object at its two ends only, rising from there until it is lifted.
+//! The moving fingertip of a regrasp: it touches the object at its two ends only, rising from there until it
+//! is lifted.
 
 use crate::clearance::ClearanceCheck;
 use crate::hand::Chains;
@@ -106,7 +107,8 @@ impl<'s> LiftCheck<'s> {
         highest >= self.lift
     }
 
-    /// Follows a fingertip from its contact until it is lifted (backwards in time for the contact at the end).
+    /// Follows a fingertip from its contact until it is lifted (backwards in time for the contact at the
+    /// end).
     fn retreat(&mut self, leg: &Leg<'_>, finger: usize, instants: &mut dyn Iterator<Item = &Instant>) {
         let Some(contact) = instants.next() else { return };
         let (mut highest, mut touching) = (contact.height, true);

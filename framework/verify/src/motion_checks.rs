@@ -45,7 +45,8 @@ pub(crate) fn joint_limits(hand: &Chains, legs: &[Leg<'_>]) -> Check {
     gauge.check()
 }
 
-/// Driven joints are where their drivers have them; between states they are because all move linearly. `None` for a hand without such joints.
+/// Driven joints are where their drivers have them; between states they are because all move linearly. `None`
+/// for a hand without such joints.
 pub(crate) fn driven_joints(hand: &Chains, legs: &[Leg<'_>]) -> Option<Check> {
     hand.fingers.iter().any(|chain| !chain.driven.is_empty()).then(|| {
         let mut gauge = Gauge::new("driven-joints", "rad", Side::AtMost, ROUNDING);
@@ -129,7 +130,8 @@ pub(crate) fn rest(hand: &Chains, legs: &[Leg<'_>]) -> Check {
     gauge.check()
 }
 
-/// The same fingers hold all through a segment, resting ones at the same contact; the moving one at the segment's ends at most.
+/// The same fingers hold all through a segment, resting ones at the same contact; the moving one at the
+/// segment's ends at most.
 pub(crate) fn contacts(hand: &Chains, legs: &[Leg<'_>]) -> Check {
     let mut gauge = Gauge::faults("contacts");
     for leg in legs {

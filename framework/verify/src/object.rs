@@ -1,15 +1,17 @@
-//! The object as the plan holds it: its facets, which must be those of what the scenario names, its mass and friction.
+//! The object as the plan holds it: its facets, which must be those of what the scenario names, its mass and
+//! friction.
 //!
-//! The facets of a primitive stand in the plan. They are held against the closed form here: every vertex on the true surface, the facets
-//! closed and outward (what every mesh must be), and none farther from the true surface than a patch of its size has to be.
+//! The facets of a primitive stand in the plan. They are held against the closed form here: every vertex on
+//! the true surface, the facets closed and outward (what every mesh must be), and none farther from the true
+//! surface than a patch of its size has to be.
 
 use regrasp_api::{Limits, Mesh, MeshSource, ObjectModel, ObjectShape, Vec3};
 use regrasp_plan::{Facets, Plan};
 
 /// How far a vertex may be from the true surface, over the object's size: rounding.
 const ON_SURFACE: f64 = 1e-9;
-/// How far a facet may be from the true surface, over (longest length)²/(shortest length · number of facets). A sphere's icosahedral facets
-/// reach 2.5, long cells on a cylinder 10.
+/// How far a facet may be from the true surface, over (longest length)²/(shortest length · number of facets).
+/// A sphere's icosahedral facets reach 2.5, long cells on a cylinder 10.
 const FACETING: f64 = 25.0;
 
 /// The object of a plan; `Err` says what makes no sense in it.

@@ -1,8 +1,10 @@
-//! Whether joints can be driven as the plan says: their velocities and accelerations, and what a trajectory controller makes of the plan.
+//! Whether joints can be driven as the plan says: their velocities and accelerations, and what a trajectory
+//! controller makes of the plan.
 //!
-//! Where states carry velocities, a controller plays the cubic through positions and velocities (Hermite). Its velocity is a parabola and its
-//! acceleration a straight line over each step, so that the largest values over *all* times are known. Where states carry none, joints move
-//! linearly and change their velocity at the states: each change counts over the shorter of its two steps.
+//! Where states carry velocities, a controller plays the cubic through positions and velocities (Hermite).
+//! Its velocity is a parabola and its acceleration a straight line over each step, so that the largest values
+//! over *all* times are known. Where states carry none, joints move linearly and change their velocity at the
+//! states: each change counts over the shorter of its two steps.
 
 use crate::hand::Chains;
 use crate::motion_checks::joint_place;

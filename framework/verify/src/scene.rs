@@ -39,7 +39,8 @@ pub(crate) struct Solidity {
 }
 
 impl Scene {
-    /// The bodies of a problem, for a motion whose joint positions stay within ± `travel` (one for each joint of the hand).
+    /// The bodies of a problem, for a motion whose joint positions stay within ± `travel` (one for each joint
+    /// of the hand).
     pub(crate) fn new(
         problem: &Problem,
         object: &ObjectModel,
@@ -142,8 +143,8 @@ impl Scene {
         Ok(())
     }
 
-    /// The links that are mounted on the palm: first links with a shape that are no farther from it, in the resting posture, than the planner keeps
-    /// bodies apart.
+    /// The links that are mounted on the palm: first links with a shape that are no farther from it, in the
+    /// resting posture, than the planner keeps bodies apart.
     fn mounted(&self, problem: &Problem, hand: &Chains) -> Result<Vec<Body>, String> {
         let mut frames = Frames::new(hand);
         for (finger, chain) in problem.hand.finger.iter().zip(&hand.fingers) {
@@ -178,7 +179,8 @@ impl Scene {
         }
     }
 
-    /// How far (m) any point of a body moves at most from a state to the next; its speed is even over the step, or below this.
+    /// How far (m) any point of a body moves at most from a state to the next; its speed is even over the
+    /// step, or below this.
     pub(crate) fn motion(&self, body: usize, leg: &Leg<'_>, state: usize) -> f64 {
         let this = &self.bodies[body];
         if this.link.is_some() {
@@ -207,7 +209,8 @@ fn lever_times(lever: f64, step: f64) -> f64 {
     if step == 0.0 { 0.0 } else { lever * step }
 }
 
-/// Which link of each finger is the first, the last and so on that has a shape: its rank among them; a fingertip has the last link's rank.
+/// Which link of each finger is the first, the last and so on that has a shape: its rank among them; a
+/// fingertip has the last link's rank.
 fn rank(body: Body, hand: &HandDescription) -> Option<(usize, usize)> {
     let shaped = |finger: usize, below: usize| {
         hand.finger[finger].joint[..below].iter().filter(|joint| !joint.link.is_empty()).count()
@@ -222,8 +225,8 @@ fn rank(body: Body, hand: &HandDescription) -> Option<(usize, usize)> {
     }
 }
 
-/// Whether a pair is to be compared: not what is fixed to the same frame, nor consecutive links of a finger (those between which no link has a
-/// shape), of which the fingertip is the last.
+/// Whether a pair is to be compared: not what is fixed to the same frame, nor consecutive links of a finger
+/// (those between which no link has a shape), of which the fingertip is the last.
 fn may_not_touch(a: Body, b: Body, hand: &HandDescription) -> bool {
     let fixed = |body: Body| matches!(body, Body::Palm | Body::Obstacle(_));
     match (rank(a, hand), rank(b, hand)) {

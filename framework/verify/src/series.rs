@@ -14,10 +14,12 @@ use std::fmt;
 /// The figures of one state of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StateFigures {
-    /// Certified lower bound of the closure margin of the fingers that hold; where the plan claims equilibrium, the smallest room of forces that
-    /// hold the load (fraction of the largest normal force). 0 or less where stability is not proved, `None` where it is not checked.
+    /// Certified lower bound of the closure margin of the fingers that hold; where the plan claims
+    /// equilibrium, the smallest room of forces that hold the load (fraction of the largest normal force). 0
+    /// or less where stability is not proved, `None` where it is not checked.
     pub margin: Option<f64>,
-    /// The smallest distance of two bodies that may not touch (m), and the two. The fingertip that a regrasp moves counts while it is lifted.
+    /// The smallest distance of two bodies that may not touch (m), and the two. The fingertip that a regrasp
+    /// moves counts while it is lifted.
     pub clearance: Option<(f64, BodyPair)>,
 }
 
@@ -35,8 +37,8 @@ impl std::error::Error for SeriesError {}
 
 /// The figures of every state, segment after segment; `Err` says what in the plan makes no sense.
 ///
-/// At the states alone: between them a clearance can be smaller. Cost: below 0.5 ms a state of four fingers, nearly all of it for the margin in
-/// transfers (a conic program for each grasp).
+/// At the states alone: between them a clearance can be smaller. Cost: below 0.5 ms a state of four fingers,
+/// nearly all of it for the margin in transfers (a conic program for each grasp).
 pub fn series(plan: &Plan) -> Result<Vec<Vec<StateFigures>>, SeriesError> {
     let problem = &plan.scenario.problem;
     let (hand, object) = prepare(plan).map_err(SeriesError)?;

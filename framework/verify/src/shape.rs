@@ -11,7 +11,8 @@ use parry3d_f64::shape::{Cuboid, Shape as ParryShape};
 use regrasp_api::{Mesh, MeshSource, PlacedShape, Pose, Shape, Vec3};
 use std::sync::Arc;
 
-/// What is left of a solid when a layer of constant thickness is taken off; in the frame of what it belongs to.
+/// What is left of a solid when a layer of constant thickness is taken off; in the frame of what it belongs
+/// to.
 #[derive(Clone, Debug)]
 pub(crate) enum Core {
     Point(Vec3),
@@ -22,7 +23,8 @@ pub(crate) enum Core {
 }
 
 impl Core {
-    /// The core and radius of a described shape, in the frame of what it belongs to; `Err` says what makes no sense in it.
+    /// The core and radius of a described shape, in the frame of what it belongs to; `Err` says what makes no
+    /// sense in it.
     pub(crate) fn of(placed: &PlacedShape) -> Result<(Self, f64), String> {
         let X = placed.pose.pose().map_err(|error| error.to_string())?;
         let point = |p: [f64; 3]| X * Point3::from(p);
@@ -114,8 +116,8 @@ fn mesh(source: &MeshSource, X: &Pose) -> Result<Core, String> {
 
 /// The distance of two cores given in frames A and B (m); not positive where they overlap.
 ///
-/// Exact for surfaces; where `contained` is set, also that neither lies wholly inside the other is looked at (a mesh is only its surface to
-/// parry), which a motion that starts apart need not ask again.
+/// Exact for surfaces; where `contained` is set, also that neither lies wholly inside the other is looked at
+/// (a mesh is only its surface to parry), which a motion that starts apart need not ask again.
 pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: bool) -> f64 {
     if a.rank() > b.rank() {
         return distance(b, X_HB, a, X_HA, contained);

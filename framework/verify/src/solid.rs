@@ -52,7 +52,8 @@ impl Solid {
         self.mesh.triangle(facet.min(self.mesh.num_triangles() as u32 - 1))
     }
 
-    /// The closest point of the surface. `near` is a facet that is likely to hold it; it changes the cost alone.
+    /// The closest point of the surface. `near` is a facet that is likely to hold it; it changes the cost
+    /// alone.
     pub(crate) fn closest(&self, p: &Vec3, near: u32) -> Closest {
         let p = vector(p);
         let bound = self.triangle(near).project_local_point(p, false).point;
@@ -91,7 +92,8 @@ impl Solid {
         let (low, high) = (line.a.min(line.b), line.a.max(line.b));
         let bound = |node: &BvhNode, _: f64| {
             let half = (node.maxs() - node.mins()) * 0.5;
-            // A ball around the node against the segment, and both boxes: long boxes suit the second, slanted segments the first.
+            // A ball around the node against the segment, and both boxes: long boxes suit the second, slanted
+            // segments the first.
             let ball = line.distance_to_local_point(node.center(), true) - half.length();
             let boxes = (node.mins() - high).max(low - node.maxs()).max(Vector::ZERO).length();
             ball.max(boxes)
@@ -130,7 +132,8 @@ impl Gap {
 
 /// The distance of a triangle and a segment, with the vector from one to the other there.
 ///
-/// If the segment does not pass through the triangle, one of the closest two points is an end of the segment or lies on an edge of the triangle.
+/// If the segment does not pass through the triangle, one of the closest two points is an end of the segment
+/// or lies on an edge of the triangle.
 fn between(triangle: &Triangle, line: &Segment) -> (f64, Vector) {
     if pierces(triangle, line) {
         return (0.0, Vector::ZERO);

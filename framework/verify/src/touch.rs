@@ -33,7 +33,8 @@ impl Touch {
         let closest = solid.closest(p_OTip, near);
         let away = p_OTip - closest.point;
         let (side, distance) = (if closest.inside { -1.0 } else { 1.0 }, away.norm());
-        // At no distance there is no direction; the gap is then minus the whole radius, which no tolerance allows.
+        // At no distance there is no direction; the gap is then minus the whole radius, which no tolerance
+        // allows.
         let n_O = away.try_normalize(1e-12).map_or(Vec3::z(), |n| n * side);
         Self { p_OC: closest.point, n_O, gap: side * distance - radius, facet: closest.facet }
     }

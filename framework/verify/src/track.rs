@@ -154,7 +154,8 @@ impl Frames {
         Self { X_HO: Pose::identity(), X_HL: Vec::new(), p_HTip: [Vec3::zeros(); MAX_FINGERS] }
     }
 
-    /// Places the object and all links a fraction of the way from a state to the next: joints and position linearly, orientation by slerp.
+    /// Places the object and all links a fraction of the way from a state to the next: joints and position
+    /// linearly, orientation by slerp.
     pub(crate) fn place(&mut self, hand: &Chains, leg: &Leg<'_>, state: usize, fraction: f64) {
         let from = &leg.states[state];
         let to = leg.states.get(state + 1).unwrap_or(from);

@@ -8,7 +8,8 @@ use serde::Serialize;
 pub struct Verdict {
     /// Whether every check is met.
     pub valid: bool,
-    /// The checks, always in the same order; only the first, `form`, where the plan's form does not allow more.
+    /// The checks, always in the same order; only the first, `form`, where the plan's form does not allow
+    /// more.
     pub checks: Vec<Check>,
     /// The figures that a plan file stores; absent where the plan's form does not allow any.
     pub certificate: Option<PlanCertificate>,
@@ -19,7 +20,8 @@ impl Verdict {
         Self { valid: checks.iter().all(|check| check.ok), checks, certificate }
     }
 
-    /// Whether everything that the plan does is right, although it may not reach all goals: what a partial plan must be.
+    /// Whether everything that the plan does is right, although it may not reach all goals: what a partial
+    /// plan must be.
     pub fn is_sound(&self) -> bool {
         self.checks.iter().all(|check| check.ok || check.name == COMPLETE)
     }
@@ -47,8 +49,8 @@ pub struct Check {
     pub worst: Option<f64>,
     /// The value that `worst` may not pass.
     pub limit: f64,
-    /// The unit of both: `m`, `rad`, `s`, `of the limit`, `faults`, `force` (fraction of the total normal force; of the largest
-    /// allowed one where the plan claims equilibrium).
+    /// The unit of both: `m`, `rad`, `s`, `of the limit`, `faults`, `force` (fraction of the total normal
+    /// force; of the largest allowed one where the plan claims equilibrium).
     pub unit: &'static str,
     /// Where the worst value is reached.
     #[serde(rename = "where")]

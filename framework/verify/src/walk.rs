@@ -100,7 +100,8 @@ struct Sampled<'w> {
     clearance: ClearanceCheck<'w>,
     lift: LiftCheck<'w>,
     stability: StabilityCheck,
-    /// In its place where the plan claims that joints' efforts hold the object; `None` within where the claim has no meaning.
+    /// In its place where the plan claims that joints' efforts hold the object; `None` within where the claim
+    /// has no meaning.
     holding: Option<Option<HoldingCheck>>,
     holds: Option<HoldsCheck>,
 }

@@ -1,4 +1,5 @@
-//! Plans made to deceive: each spends a tolerance many times over, and each must be refused by the check that is meant.
+//! Plans made to deceive: each spends a tolerance many times over, and each must be refused by the check that
+//! is meant.
 
 mod common;
 

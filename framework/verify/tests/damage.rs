@@ -169,7 +169,8 @@ fn normals() {
 
 #[test]
 fn slip() {
-    // The object moves on while one fingertip drags: in the end it is 0.3 mm from where it would have rolled to.
+    // The object moves on while one fingertip drags: in the end it is 0.3 mm from where it would have rolled
+    // to.
     let drag = |hand: &ChainHand, motion: &mut Motion, distance: f64| {
         let states = &mut motion.segments[2].states;
         let last = states.len() - 1;
@@ -191,7 +192,8 @@ fn slip() {
 
 #[test]
 fn equal_lengths_are_not_rolling() {
-    // The cube moves and the fingertips with it: no slip. Then only the contacts are turned back, so that paths on both bodies are equally long.
+    // The cube moves and the fingertips with it: no slip. Then only the contacts are turned back, so that
+    // paths on both bodies are equally long.
     let verdict = with_motion(|hand, motion| {
         let states = &mut motion.segments[0].states;
         let start = states[0].clone();

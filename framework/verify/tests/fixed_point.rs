@@ -51,8 +51,8 @@ fn points_that_roll_are_refused() {
     let rolled = judged(Fingertip::Point, common::transfer, |_| {});
     assert_eq!(failed(&rolled), ["slip"]);
     let slip = rolled.checks.iter().find(|check| check.name == "slip").unwrap();
-    // A ball of 10 mm that turns by 0.1 rad about the vertical rolls a millimetre, and does so in each of the two
-    // transfers through which the finger holds on.
+    // A ball of 10 mm that turns by 0.1 rad about the vertical rolls a millimetre, and does so in each of the
+    // two transfers through which the finger holds on.
     assert!((1.5e-3..2.5e-3).contains(&slip.worst.unwrap()), "{slip:?}");
 }
 

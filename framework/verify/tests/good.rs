@@ -40,7 +40,8 @@ fn a_plan_made_by_hand_verifies() {
 #[test]
 fn the_certificate_says_what_and_where() {
     let certificate = verify(&common::plan(8)).certificate.unwrap();
-    // The last link's capsule ends in a ball 2 mm smaller than the fingertip about the same centre; the bound gives 0.1 mm away.
+    // The last link's capsule ends in a ball 2 mm smaller than the fingertip about the same centre; the bound
+    // gives 0.1 mm away.
     let clearance = certificate.clearance.unwrap();
     assert!((clearance.value - 0.0019).abs() < 1e-6, "{clearance:?}");
     let pair = clearance.place.pair.unwrap();

@@ -6,7 +6,8 @@ use regrasp_api::*;
 use regrasp_plan::*;
 use regrasp_verify::{Verdict, verify};
 
-/// A fingertip of 0.1 mm that slides along three axes; a block 0.2 m below; one segment from `states` (positions of the tip, m).
+/// A fingertip of 0.1 mm that slides along three axes; a block 0.2 m below; one segment from `states`
+/// (positions of the tip, m).
 fn probe(kind: SegmentName, states: &[[f64; 3]], edit: impl FnOnce(&mut Problem)) -> Verdict {
     let mut plan = common::plan(1);
     let axis = |i: usize| JointDescription {

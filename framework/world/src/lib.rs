@@ -1,4 +1,5 @@
-//! The world: hands, objects, obstacles; kinematics, collision and distance. It reads no file: meshes are given in place.
+//! The world: hands, objects, obstacles; kinematics, collision and distance. It reads no file: meshes are
+//! given in place.
 
 mod bodies;
 mod clearance;

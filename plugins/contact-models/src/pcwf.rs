@@ -6,10 +6,11 @@ use regrasp_api::{
 
 /// Point contact with friction: forces inside the cone `|f_t| ≤ μ f_n`, no torque about the normal.
 ///
-/// What the paper assumes (Sahbani, Saut, Perdereau, "An efficient algorithm for dexterous manipulation planning", SSD
-/// 2007, section V; section III derives n = 4 from it); the model goes back to Salisbury & Roth, "Kinematic and force analysis of articulated mechanical
-/// hands", J. Mechanisms, Transmissions and Automation in Design, 1983. At least three such contacts are needed for
-/// force closure in space: two leave the rotation about the line that joins them free.
+/// What the paper assumes (Sahbani, Saut, Perdereau, "An efficient algorithm for dexterous manipulation
+/// planning", SSD 2007, section V; section III derives n = 4 from it); the model goes back to Salisbury &
+/// Roth, "Kinematic and force analysis of articulated mechanical hands", J. Mechanisms, Transmissions and
+/// Automation in Design, 1983. At least three such contacts are needed for force closure in space: two leave
+/// the rotation about the line that joins them free.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pcwf;
 

@@ -17,7 +17,8 @@ fn carry(bench: &Bench, from: &Configuration, to: &Pose, path: Option<&mut Path>
     planner.connect(&bench.task(), from, &Target::Transfer(to), path, &mut context(1)).unwrap()
 }
 
-/// The most (m) that a holding tip's centre strays from its place on the object, looked at ten times between states.
+/// The most (m) that a holding tip's centre strays from its place on the object, looked at ten times between
+/// states.
 fn stray(bench: &Bench, path: &Path) -> f64 {
     let mut worst: f64 = 0.0;
     for pair in path.states.windows(2) {

@@ -22,7 +22,8 @@ const SEPARATING_TWIST: u64 = 2;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ForceClosureSettings {
-    /// Margins (no unit: Ferrari and Canny's Q1) up to this one may be left undecided, which counts as not stable; default 1e-6.
+    /// Margins (no unit: Ferrari and Canny's Q1) up to this one may be left undecided, which counts as not
+    /// stable; default 1e-6.
     ///
     /// Below 1e-7 rounding decides. A grasp with a larger margin is never refused.
     #[schemars(range(min = 1e-7, max = 1e-3), extend("x-unit" = "1"))]
@@ -37,20 +38,23 @@ impl Default for ForceClosureSettings {
 
 impl Settings for ForceClosureSettings {}
 
-/// Force closure, decided exactly for point contacts with and without friction, for soft fingers, with no linearised cone, and for polyhedral
-/// cones.
+/// Force closure, decided exactly for point contacts with and without friction, for soft fingers, with no
+/// linearised cone, and for polyhedral cones.
 ///
-/// A grasp is force closure where internal forces exist strictly inside every cone and the grasp map has rank 6. That is so exactly where
-/// the polar body Ω = {w : h_i(-w) ≤ 1} of the contacts' wrench sets is bounded, h_i the support function of contact i's cone at unit
-/// normal force. Newton's method towards the analytic centre of Ω ends with one of two proofs: multipliers that are such a force, or a
-/// twist that no contact resists. Three point contacts with friction are decided in closed form.
+/// A grasp is force closure where internal forces exist strictly inside every cone and the grasp map has rank
+/// 6. That is so exactly where the polar body Ω = {w : h_i(-w) ≤ 1} of the contacts' wrench sets is bounded,
+///    h_i the support function of contact i's cone at unit
+/// normal force. Newton's method towards the analytic centre of Ω ends with one of two proofs: multipliers
+/// that are such a force, or a twist that no contact resists. Three point contacts with friction are decided
+/// in closed form.
 ///
-/// The margin is Q1 = min over unit twists of max_i h_i (Ferrari & Canny's with the sum of the normal forces as bound), torques taken about
-/// the contacts' centroid over the largest distance from it unless the caller fixes both. Verdicts do not depend on that choice, except
-/// that a margin up to `undecided_margin` may give [`Stability::Undecided`].
+/// The margin is Q1 = min over unit twists of max_i h_i (Ferrari & Canny's with the sum of the normal forces
+/// as bound), torques taken about the contacts' centroid over the largest distance from it unless the caller
+/// fixes both. Verdicts do not depend on that choice, except that a margin up to `undecided_margin` may give
+/// [`Stability::Undecided`].
 ///
-/// Grasps with a polyhedral cone are decided as [`crate::Linearised`] does it, the polyhedral cones as they are and the round ones round: a
-/// linear feasibility problem whose columns are found in closed form.
+/// Grasps with a polyhedral cone are decided as [`crate::Linearised`] does it, the polyhedral cones as they
+/// are and the round ones round: a linear feasibility problem whose columns are found in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceClosure {
     tau: f64,

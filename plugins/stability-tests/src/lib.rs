@@ -1,5 +1,5 @@
-//! Built-in stability tests: exact force closure, the conic program that it is checked against, cones of edges, the wrench ball,
-//! equilibrium, holding.
+//! Built-in stability tests: exact force closure, the conic program that it is checked against, cones of
+//! edges, the wrench ball, equilibrium, holding.
 
 mod balance;
 mod closure;

@@ -79,7 +79,8 @@ proptest! {
         if touches.len() < 8 && verdict(&touches).is_stable() {
             let (lower, upper) = margins(&touches, length, center);
             prop_assert!(lower > 0.0 && lower <= upper * (1.0 + 1e-9), "{} {}", lower, upper);
-            // Upper bounds are local maxima: what is certain is that no lower bound passes a larger grasp's upper bound.
+            // Upper bounds are local maxima: what is certain is that no lower bound passes a larger grasp's
+            // upper bound.
             let (_, rougher) = margins(&scaled_friction(&touches, factor), length, center);
             prop_assert!(lower <= rougher * (1.0 + 1e-9));
             let mut more = touches.clone();
@@ -146,7 +147,8 @@ fn hints_made_of_nonsense_change_no_verdict() {
     }
 }
 
-/// Q1 by brute force: many random unit twists, each improved by a pattern search; an upper bound that gets close.
+/// Q1 by brute force: many random unit twists, each improved by a pattern search; an upper bound that gets
+/// close.
 fn dense_margin(touches: &[Touch], random: &mut Random) -> f64 {
     let (center, length) = center_and_length(touches);
     let value = |w: &[f64; 6]| {

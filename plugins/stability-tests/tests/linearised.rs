@@ -142,7 +142,8 @@ fn edges_given_as_a_polyhedral_cone_are_the_same_edges() {
     assert!((200..800).contains(&stable), "{stable}");
 }
 
-/// An edge is a frictionless contact with the edge's direction as normal: the conic program decides those on its own.
+/// An edge is a frictionless contact with the edge's direction as normal: the conic program decides those on
+/// its own.
 #[test]
 fn polyhedral_cones_are_decided_as_the_conic_program_decides_their_edges() {
     let mut random = Random::from_key(36, 0, 0, 0);

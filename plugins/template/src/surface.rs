@@ -1,11 +1,12 @@
 //! A surface: the facets of a convex object, everything by brute force.
 //!
 //! An object that is not convex is refused: a fingertip could not reach every
-//! point of it, the plane of a facet that faces it would not tell which is closest, and paths would have to go round what the ball cannot
-//! enter (`surface/geodesic` does all that).
+//! point of it, the plane of a facet that faces it would not tell which is closest, and paths would have to
+//! go round what the ball cannot enter (`surface/geodesic` does all that).
 //!
-//! Shortest paths run over points on the edges (Lanthier, Maheshwari, Sack, "Approximating weighted shortest paths on polyhedral surfaces", SoCG
-//! 1997), found by Dijkstra's algorithm; with few points an edge they are some percent longer than the shortest.
+//! Shortest paths run over points on the edges (Lanthier, Maheshwari, Sack, "Approximating weighted shortest
+//! paths on polyhedral surfaces", SoCG 1997), found by Dijkstra's algorithm; with few points an edge they are
+//! some percent longer than the shortest.
 
 use regrasp_api::{
     Build, BuildError, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings, Slot,
@@ -24,7 +25,8 @@ const STEP: f64 = 2e-4;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FacetsSettings {
-    /// Points that a path may cross an edge at; more make paths shorter and slower. Edges that are long for the object get more.
+    /// Points that a path may cross an edge at; more make paths shorter and slower. Edges that are long for
+    /// the object get more.
     #[schemars(range(min = 1, max = 100))]
     pub points: usize,
 }
@@ -149,7 +151,8 @@ impl Facets {
         pieces
     }
 
-    /// Dijkstra's algorithm from a point, until every point of the target's facets is settled; the straight distance to the target leads.
+    /// Dijkstra's algorithm from a point, until every point of the target's facets is settled; the straight
+    /// distance to the target leads.
     fn spread(&self, from: &Vec3, starts: &[u32], to: &Vec3, ends: &[u32]) -> Vec<Mark> {
         let mut marks: Vec<Mark> = vec![(f64::INFINITY, None, 0); self.points.len()];
         let mut left: usize = ends.iter().map(|&facet| self.of_facet[facet as usize].len()).sum();
@@ -205,7 +208,8 @@ fn closest_on_segment(a: &Vec3, b: &Vec3, p: &Vec3) -> Vec3 {
     a + along * ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
 }
 
-/// The point of a triangle closest to `p`: its foot on the plane if that lies inside, else on the nearest side.
+/// The point of a triangle closest to `p`: its foot on the plane if that lies inside, else on the nearest
+/// side.
 fn closest_on_facet(corners: &[Vec3; 3], p: &Vec3) -> Vec3 {
     let [a, b, c] = corners;
     let normal = (b - a).cross(&(c - a));
@@ -295,7 +299,8 @@ impl SurfaceParam for Facets {
         Projection { contact: Contact { facet, p_OC: point, n_O: (p_OF - point) / distance }, distance }
     }
 
-    /// Small steps in the tangent plane, each projected back: they can only become shorter, by less than a thousandth.
+    /// Small steps in the tangent plane, each projected back: they can only become shorter, by less than a
+    /// thousandth.
     fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
         let steps = (distance / STEP).ceil() as usize;
         let (mut at, mut direction) = (*from, *direction_O);

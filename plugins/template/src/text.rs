@@ -1,4 +1,5 @@
-//! The template as text: the module of each role, and the files of the crate round it, with `{{words}}` to be filled in.
+//! The template as text: the module of each role, and the files of the crate round it, with `{{words}}` to be
+//! filled in.
 
 use regrasp_api::{Role, Slot};
 

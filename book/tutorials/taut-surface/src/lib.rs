@@ -93,7 +93,8 @@ impl Taut {
         Ok(surface)
     }
 
-    /// Spreads gates evenly over the edges, between their ends: a shortest path on a convex object meets no corner.
+    /// Spreads gates evenly over the edges, between their ends: a shortest path on a convex object meets no
+    /// corner.
     fn put_gates(&mut self, count: usize) {
         let mut first_facet: BTreeMap<[u32; 2], u32> = BTreeMap::new();
         let size = self.areas[self.areas.len() - 1].sqrt();
@@ -162,7 +163,8 @@ impl Taut {
         (crossed, passed)
     }
 
-    /// Dijkstra's algorithm from a point, until every gate of the target's facets is settled; the straight distance to the target leads.
+    /// Dijkstra's algorithm from a point, until every gate of the target's facets is settled; the straight
+    /// distance to the target leads.
     fn spread(&self, from: &Vec3, starts: &[u32], to: &Vec3, ends: &[u32]) -> Vec<Mark> {
         let mut marks: Vec<Mark> = vec![(f64::INFINITY, None, 0); self.gates.len()];
         let mut left: usize = ends.iter().map(|&facet| self.of_facet[facet as usize].len()).sum();
@@ -202,7 +204,8 @@ impl Taut {
 // ANCHOR_END: dijkstra
 
 // ANCHOR: taut
-/// Pulls a path through the gates taut: each gate in turn moves to where it is shortest between its neighbours, again and again.
+/// Pulls a path through the gates taut: each gate in turn moves to where it is shortest between its
+/// neighbours, again and again.
 fn pull(from: &Vec3, gates: &mut [Gate], to: &Vec3, rounds: usize) {
     for _ in 0..rounds {
         let mut moved: f64 = 0.0;
@@ -219,7 +222,8 @@ fn pull(from: &Vec3, gates: &mut [Gate], to: &Vec3, rounds: usize) {
     }
 }
 
-/// Where the straight line from `a` to `b` meets an edge, once the facet with `b` is turned about it into the plane of the one with `a`.
+/// Where the straight line from `a` to `b` meets an edge, once the facet with `b` is turned about it into the
+/// plane of the one with `a`.
 fn straight_over(edge: &[Vec3; 2], a: &Vec3, b: &Vec3) -> Vec3 {
     let along = edge[1] - edge[0];
     let place = |p: &Vec3| (p - edge[0]).dot(&along) / along.norm_squared();
@@ -318,7 +322,8 @@ impl SurfaceParam for Taut {
         Projection { contact: Contact { facet, p_OC: point, n_O: (p_OF - point) / distance }, distance }
     }
 
-    /// Small steps in the tangent plane, each projected back: they can only become shorter, by less than a thousandth.
+    /// Small steps in the tangent plane, each projected back: they can only become shorter, by less than a
+    /// thousandth.
     fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
         let steps = (distance / STEP).ceil() as usize;
         let (mut at, mut direction) = (*from, *direction_O);
@@ -360,7 +365,8 @@ mod tests {
 
     #[test]
     fn a_path_over_one_edge_is_straight_once_the_edge_is_unfolded() {
-        // Two unit squares that meet at a right angle in the y axis: unfolded, the ends are 1 and 3 along it, 1 to each side.
+        // Two unit squares that meet at a right angle in the y axis: unfolded, the ends are 1 and 3 along it,
+        // 1 to each side.
         let edge = [Vec3::zeros(), Vec3::new(0.0, 4.0, 0.0)];
         let (a, b) = (Vec3::new(1.0, 1.0, 0.0), Vec3::new(0.0, 3.0, -1.0));
         assert!((straight_over(&edge, &a, &b) - Vec3::new(0.0, 2.0, 0.0)).norm() < 1e-12);

@@ -22,8 +22,8 @@ pub struct Waypoint {
 
 /// A path of contacts on the offset surface, joined by straight segments of `p_OC` and arcs of `n_O`.
 ///
-/// At a convex edge `p_OC` stays and `n_O` turns; at a concave edge two waypoints with equal fingertip centres follow
-/// each other, and the contact jumps.
+/// At a convex edge `p_OC` stays and `n_O` turns; at a concave edge two waypoints with equal fingertip
+/// centres follow each other, and the contact jumps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfacePath {
     /// The waypoints, with nondecreasing `lift_length`, the first at 0.
@@ -75,16 +75,17 @@ impl SurfacePath {
 
 /// The object's surface: points, normals, shortest paths, projection.
 ///
-/// Built once for an object and a fingertip radius; prepares there what it likes. There is one true surface, the object's mesh
-/// ([`crate::ObjectModel::mesh`]): points and normals are the mesh's, whatever closed form stood behind it. What a plugin chooses are paths,
-/// samples and where walks lead. Laws: equivariant under a rigid motion
-/// of the object; `geodesic` starts and ends exactly at the contacts it was given, and its length is at least the chord
-/// and symmetric in its ends to the plugin's tolerance.
+/// Built once for an object and a fingertip radius; prepares there what it likes. There is one true surface,
+/// the object's mesh ([`crate::ObjectModel::mesh`]): points and normals are the mesh's, whatever closed form
+/// stood behind it. What a plugin chooses are paths, samples and where walks lead. Laws: equivariant under a
+/// rigid motion of the object; `geodesic` starts and ends exactly at the contacts it was given, and its
+/// length is at least the chord and symmetric in its ends to the plugin's tolerance.
 pub trait SurfaceParam: Send + Sync {
     /// A random contact, uniform over the area that a fingertip can touch.
     fn sample(&self, random: &mut Random) -> Contact;
 
-    /// Fills `path` with the shortest path from `from` to `to` and its lift; `false` where the fingertip cannot follow.
+    /// Fills `path` with the shortest path from `from` to `to` and its lift; `false` where the fingertip
+    /// cannot follow.
     fn geodesic(
         &self,
         from: &Contact,
@@ -98,11 +99,12 @@ pub trait SurfaceParam: Send + Sync {
     /// `hint`, the facet of a contact nearby, may make the call cheaper, never change its answer.
     fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection;
 
-    /// The contact reached by walking straight ahead from `from` along `direction_O` (any vector; its tangential part
-    /// counts) for `distance` (m) of the contact point on the surface.
+    /// The contact reached by walking straight ahead from `from` along `direction_O` (any vector; its
+    /// tangential part counts) for `distance` (m) of the contact point on the surface.
     fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact;
 
-    /// Distance (m), along the surface's facets or straight, from the contact to the nearest sharp edge; infinite where there is none.
+    /// Distance (m), along the surface's facets or straight, from the contact to the nearest sharp edge;
+    /// infinite where there is none.
     fn edge_distance(&self, contact: &Contact) -> f64;
 }
 const _: Option<&dyn SurfaceParam> = None; // must stay object safe

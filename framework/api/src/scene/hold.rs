@@ -3,19 +3,23 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What the grasps of a plan must hold in the world: `[hold]` in a scenario. With it plans are made for the object's weight and the joints' efforts.
+/// What the grasps of a plan must hold in the world: `[hold]` in a scenario. With it plans are made for the
+/// object's weight and the joints' efforts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct HoldDescription {
     /// Whether the object's weight must be held.
     pub weight: bool,
-    /// Plan as if friction were this share (0.05 to 1) of what is given, in place of `limits.resolution.friction_margin`; `"most"` plans with 0.8, then with less and less, and
-    /// keeps the plan that needs least.
+    /// Plan as if friction were this share (0.05 to 1) of what is given, in place of
+    /// `limits.resolution.friction_margin`; `"most"` plans with 0.8, then with less and less, and keeps the
+    /// plan that needs least.
     pub friction_factor: FrictionFactor,
-    /// Largest disturbing force (N) and torque (N·m) at the centre of mass, in any direction, which must be held beside the weight.
+    /// Largest disturbing force (N) and torque (N·m) at the centre of mass, in any direction, which must be
+    /// held beside the weight.
     #[schemars(inner(range(min = 0.0, max = 1e4)), extend("x-unit" = "N"))]
     pub disturbance: [f64; 2],
-    /// Largest normal force of one contact (N), for fragile objects; where absent the joints' efforts alone bound it.
+    /// Largest normal force of one contact (N), for fragile objects; where absent the joints' efforts alone
+    /// bound it.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-2, max = 1e4), extend("x-unit" = "N"))]
     #[schemars(example = 10.0)]
@@ -52,7 +56,8 @@ pub enum Most {
 }
 
 impl FrictionFactor {
-    /// The shares to plan with, one after the other, each less than the one before: a plan for less friction replaces one for more.
+    /// The shares to plan with, one after the other, each less than the one before: a plan for less friction
+    /// replaces one for more.
     pub fn shares(&self) -> &[f64] {
         match self {
             Self::Share(share) => std::slice::from_ref(share),

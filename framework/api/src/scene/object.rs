@@ -74,8 +74,8 @@ pub struct ObstacleDescription {
 
 /// The shape of the object: a primitive, turned into a closed mesh about the origin, or a mesh.
 ///
-/// `facets` is the wished number of facets; the mesh has the nearest number that the shape's pattern allows. The planner and the verifier
-/// take the facets as the true surface.
+/// `facets` is the wished number of facets; the mesh has the nearest number that the shape's pattern allows.
+/// The planner and the verifier take the facets as the true surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ObjectShape {

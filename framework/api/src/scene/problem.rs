@@ -11,12 +11,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FingerGrasp {
-    /// Contact point on the object, in the object's frame (m), within 1 mm of the surface; absent for a free finger.
+    /// Contact point on the object, in the object's frame (m), within 1 mm of the surface; absent for a free
+    /// finger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("examples" = [[0.0, 0.03, 0.0]]))]
     #[schemars(extend("x-unit" = "m"))]
     pub contact: Option<[f64; 3]>,
-    /// Joint positions (rad; m where prismatic); where absent, inverse kinematics for a contact and the rest posture for a free finger.
+    /// Joint positions (rad; m where prismatic); where absent, inverse kinematics for a contact and the rest
+    /// posture for a free finger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("examples" = [[0.0, -0.9, 0.6]]))]
     #[schemars(extend("x-unit" = "rad; m where prismatic"))]
@@ -97,8 +99,8 @@ fn default_gravity() -> [f64; 3] {
 const WORKSPACE_MARGIN: f64 = 0.015;
 
 impl Problem {
-    /// Lowest and highest coordinates of the object's origin in H (m) for samples: the workspace, or a box about `poses`, those of start
-    /// and goals.
+    /// Lowest and highest coordinates of the object's origin in H (m) for samples: the workspace, or a box
+    /// about `poses`, those of start and goals.
     pub fn sampling_box(&self, poses: &[Pose]) -> (Vec3, Vec3) {
         if let Some(given) = self.workspace {
             return (given.lower.into(), given.upper.into());

@@ -1,7 +1,9 @@
-//! Compares plain data with a JSON schema, so that a misspelt key or a wrong type is reported with its place and its likely meaning.
+//! Compares plain data with a JSON schema, so that a misspelt key or a wrong type is reported with its place
+//! and its likely meaning.
 //!
-//! Serde's own messages lose the path inside tagged enumerations; this walk keeps it. It knows the part of JSON Schema that `schemars`
-//! writes for plain structs, options, arrays and tagged enumerations; what it does not know it lets pass, for serde to judge.
+//! Serde's own messages lose the path inside tagged enumerations; this walk keeps it. It knows the part of
+//! JSON Schema that `schemars` writes for plain structs, options, arrays and tagged enumerations; what it
+//! does not know it lets pass, for serde to judge.
 
 use crate::{Departure, Fault, KeyPath, Range, near, unit};
 use serde_json::{Map, Value};

@@ -79,14 +79,17 @@ pub trait Hand: Send + Sync {
 
     /// Joint positions within the limits that bring the fingertip's centre to `p_HF` (m, in H), or `None`.
     ///
-    /// Spare joints keep their positions of `near`; among several solutions the one closest to `near` is taken, so that
-    /// a continuous motion of the fingertip gives a continuous motion of the joints. Exact to 1e-9 m.
+    /// Spare joints keep their positions of `near`; among several solutions the one closest to `near` is
+    /// taken, so that a continuous motion of the fingertip gives a continuous motion of the joints. Exact to
+    /// 1e-9 m.
     fn inverse(&self, finger: FingerIndex, p_HF: &Vec3, near: &FingerJoints) -> Option<FingerJoints>;
 
-    /// Puts the joints that others drive (mimic joints) where those have them; nothing to do in a hand without such joints.
+    /// Puts the joints that others drive (mimic joints) where those have them; nothing to do in a hand
+    /// without such joints.
     ///
-    /// The hand's own answers take driven joints to be there already: code that changes joints in another way than by [`Hand::inverse`] or
-    /// by interpolation between two settled postures calls this before it stores them.
+    /// The hand's own answers take driven joints to be there already: code that changes joints in another way
+    /// than by [`Hand::inverse`] or by interpolation between two settled postures calls this before it stores
+    /// them.
     fn settle(&self, _finger: FingerIndex, _joints: &mut FingerJoints) {}
 
     /// Whether every joint is within its limits.

@@ -1,6 +1,7 @@
 //! Small, slow implementations of the roles, independent of the built-in plugins.
 //!
-//! They stand in for the other roles while one is tested, and they are the honest part of the kit's own liars.
+//! They stand in for the other roles while one is tested, and they are the honest part of the kit's own
+//! liars.
 
 mod admissible;
 mod closure;

@@ -174,8 +174,9 @@ fn reach_along(cone: &Cone<'_>, contact: &Contact, direction_O: &Vec3) -> f64 {
     laws::support(cone, &Vec3::new(direction_O.dot(&t1), direction_O.dot(&t2), 0.0))
 }
 
-/// A cone is a fact about the object: two contacts with all but the same normal have all but the same cone in O, whichever way their tangents
-/// point. Where [`tangents`] changes branch, a model that fixes its edges to them jumps.
+/// A cone is a fact about the object: two contacts with all but the same normal have all but the same cone in
+/// O, whichever way their tangents point. Where [`tangents`] changes branch, a model that fixes its edges to
+/// them jumps.
 fn tangent_frames(subject: &Subject<'_>) -> Finding {
     let model = build(subject)?;
     // |n.x| = 0.6 is where `any_orthogonal` takes another axis.

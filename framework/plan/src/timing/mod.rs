@@ -1,14 +1,17 @@
 //! When each state is passed and how fast: as fast as the joints' limits allow along a given motion.
 //!
-//! A motion means straight lines in joint space from state to state. What a trajectory controller plays is the cubic through the states'
-//! positions and velocities (Hermite). [`assign_times`] chooses times and velocities so that this cubic
+//! A motion means straight lines in joint space from state to state. What a trajectory controller plays is
+//! the cubic through the states' positions and velocities (Hermite). [`assign_times`] chooses times and
+//! velocities so that this cubic
 //!
-//! - starts and ends at rest, and keeps every joint's velocity and acceleration at all times (a cubic's acceleration is largest at its ends);
+//! - starts and ends at rest, and keeps every joint's velocity and acceleration at all times (a cubic's
+//!   acceleration is largest at its ends);
 //! - never takes a fingertip farther than [`TimingLimits::deviation`] from where the motion means it to be.
 //!
-//! The speed along the path follows from reachability: Q.-C. Pham, H. Pham, "A new approach to time-optimal path parameterization based on
-//! reachability analysis", IEEE T-RO 2018. A pass backward finds from which speeds the rest can still be driven, a pass forward takes the
-//! highest of them. A state where the path turns too sharply for the cubic is passed at rest (a corner), as are the borders of regrasps.
+//! The speed along the path follows from reachability: Q.-C. Pham, H. Pham, "A new approach to time-optimal
+//! path parameterization based on reachability analysis", IEEE T-RO 2018. A pass backward finds from which
+//! speeds the rest can still be driven, a pass forward takes the highest of them. A state where the path
+//! turns too sharply for the cubic is passed at rest (a corner), as are the borders of regrasps.
 
 mod passes;
 mod path;
@@ -27,7 +30,8 @@ pub struct TimingLimits {
     pub object_turn_rate: Option<f64>,
     /// Shortest time between two states (s), positive: also states between which no joint moves are apart.
     pub shortest_step: f64,
-    /// How far the cubic may take a fingertip from the motion that the states mean (m), positive: half of a plan's closure tolerance.
+    /// How far the cubic may take a fingertip from the motion that the states mean (m), positive: half of a
+    /// plan's closure tolerance.
     pub deviation: f64,
 }
 
@@ -64,8 +68,8 @@ pub enum TimingError {
     },
 }
 
-/// Fills in times, from 0, and joint velocities of all states. Shared states of consecutive segments get the same, all others strictly
-/// increasing times.
+/// Fills in times, from 0, and joint velocities of all states. Shared states of consecutive segments get the
+/// same, all others strictly increasing times.
 ///
 /// Cost: linear in the number of states, some microseconds each.
 pub fn assign_times(motion: &mut Motion, hand: &dyn Hand, limits: &TimingLimits) -> Result<(), TimingError> {

@@ -1,12 +1,13 @@
 //! The passes of reachability: how fast each state is passed, and how long each step takes.
 //!
-//! With the squares x0, x1 of the speeds at a step's ends, chord c, span S, and e0, e1 the tangents less the chord, the cubic's accelerations at the
-//! step's ends are
+//! With the squares x0, x1 of the speeds at a step's ends, chord c, span S, and e0, e1 the tangents less the
+//! chord, the cubic's accelerations at the step's ends are
 //!
 //! A0 = (c (x1 - x0)/2 - (2 e0 x0 + e1 x1) - (2 e0 + e1) √(x0 x1))/S,
 //! A1 = (c (x1 - x0)/2 + (e0 x0 + 2 e1 x1) + (e0 + 2 e1) √(x0 x1))/S.
 //!
-//! The root lies between 0 and (x0 + x1)/2: demanding the limits for both makes them linear in x0 and x1, and asks for a little more.
+//! The root lies between 0 and (x0 + x1)/2: demanding the limits for both makes them linear in x0 and x1, and
+//! asks for a little more.
 
 use super::{JointBounds, Path};
 use std::cmp::Ordering;
@@ -84,7 +85,8 @@ fn limits_of(path: &Path, bounds: &JointBounds, step: usize, rows: &mut Vec<Row>
 
 /// The largest x0 up to `cap` for which some x1 between 0 and `next` keeps every limit.
 ///
-/// The room that is left for x1 is a concave function of x0, not negative at 0: Newton's method from above finds where it becomes zero.
+/// The room that is left for x1 is a concave function of x0, not negative at 0: Newton's method from above
+/// finds where it becomes zero.
 fn most_before(rows: &[Row], cap: f64, next: f64) -> f64 {
     let mut x = cap;
     for _ in 0..64 {
@@ -121,7 +123,8 @@ fn most_after(rows: &[Row], x0: f64, cap: f64) -> f64 {
     rising.map(|row| (row.most - row.from * x0) / row.to).fold(cap, f64::min).max(0.0)
 }
 
-/// By how much all steps must last longer for every limit to hold; at most 1 where all hold. What rounding may leave, no more.
+/// By how much all steps must last longer for every limit to hold; at most 1 where all hold. What rounding
+/// may leave, no more.
 fn worst_ratio(path: &Path, bounds: &JointBounds, pace: &Pace) -> f64 {
     let mut worst = 0.0_f64;
     for (step, &h) in pace.durations.iter().enumerate() {
@@ -139,7 +142,8 @@ fn worst_ratio(path: &Path, bounds: &JointBounds, pace: &Pace) -> f64 {
     worst
 }
 
-/// The largest velocity of a cubic with these velocities at its ends and this mean: a parabola with the Bézier points v0, b, v1.
+/// The largest velocity of a cubic with these velocities at its ends and this mean: a parabola with the
+/// Bézier points v0, b, v1.
 fn fastest(v0: f64, v1: f64, mean: f64) -> f64 {
     let b = 3.0 * mean - v0 - v1;
     let ends = v0.abs().max(v1.abs());

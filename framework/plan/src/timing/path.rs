@@ -1,15 +1,18 @@
-//! The path as timing sees it: straight steps between states, a tangent at each state, and where it must stop.
+//! The path as timing sees it: straight steps between states, a tangent at each state, and where it must
+//! stop.
 //!
-//! A step's *span* is the time (s) that it takes with the slowest joint at its velocity limit. Along the path a parameter σ grows by the span of
-//! each step; the speed dσ/dt is at most 1. The *chord* of a step is its change over its span; the *tangent* of a state is the slope there of the
-//! parabola through it and its neighbours, or zero where the path stops.
+//! A step's *span* is the time (s) that it takes with the slowest joint at its velocity limit. Along the path
+//! a parameter σ grows by the span of each step; the speed dσ/dt is at most 1. The *chord* of a step is its
+//! change over its span; the *tangent* of a state is the slope there of the parabola through it and its
+//! neighbours, or zero where the path stops.
 
 use super::{JointBounds, TimingError, TimingLimits};
 use crate::{Motion, SegmentKind};
 use regrasp_api::{Configuration, FingerIndex, Hand, angle_between};
 
-/// The largest value of f (1 - f)² and f² (1 - f) over 0 ≤ f ≤ 1, times 2: how far the cubic leaves the chord, in units of the span times the
-/// difference of tangent and chord, for whatever speeds at the step's two ends.
+/// The largest value of f (1 - f)² and f² (1 - f) over 0 ≤ f ≤ 1, times 2: how far the cubic leaves the
+/// chord, in units of the span times the difference of tangent and chord, for whatever speeds at the step's
+/// two ends.
 const BULGE: f64 = 8.0 / 27.0;
 /// The part of the deviation that is used: Jacobians are those of a state, and change along a step.
 const USED_DEVIATION: f64 = 0.5;
@@ -76,7 +79,8 @@ impl Path {
             |limits: &[f64]| changes.iter().zip(limits).map(|(d, limit)| d.abs() / limit).fold(0.0, f64::max);
         let object = speed.max(turn);
         let span = over(&bounds.velocity).max(object);
-        // The cubic from rest to rest over a time h has the largest speed 1.5 d/h and the largest acceleration 6 d/h².
+        // The cubic from rest to rest over a time h has the largest speed 1.5 d/h and the largest
+        // acceleration 6 d/h².
         let rest_to_rest = (1.5 * span).max((6.0 * over(&bounds.acceleration)).sqrt());
         self.rest_to_rest.push(rest_to_rest.max(limits.shortest_step));
         if changes.iter().all(|&d| d == 0.0) {
@@ -119,9 +123,11 @@ impl Path {
         }
     }
 
-    /// The highest speeds at which joints keep their velocities at the states and in between, and steps their shortest time.
+    /// The highest speeds at which joints keep their velocities at the states and in between, and steps their
+    /// shortest time.
     ///
-    /// A step's velocity lies in the convex hull of those at its ends and 3 m - v0 - v1 with the mean m (its Bézier points).
+    /// A step's velocity lies in the convex hull of those at its ends and 3 m - v0 - v1 with the mean m (its
+    /// Bézier points).
     fn cap(&mut self, bounds: &JointBounds, limits: &TimingLimits) {
         for k in 0..self.stops.len() {
             if self.stops[k] {
@@ -156,7 +162,8 @@ impl Path {
     }
 }
 
-/// All states in a row, each with whether the motion must rest there: at its ends, and where a regrasp begins or ends.
+/// All states in a row, each with whether the motion must rest there: at its ends, and where a regrasp begins
+/// or ends.
 fn row<'m>(motion: &'m Motion, hand: &dyn Hand) -> Result<Vec<(&'m Configuration, bool)>, TimingError> {
     let mut row: Vec<(&Configuration, bool)> = Vec::new();
     for (s, segment) in motion.segments.iter().enumerate() {

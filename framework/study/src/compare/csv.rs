@@ -5,8 +5,8 @@ pub(super) fn line(cells: Vec<String>) -> String {
     cells.into_iter().map(quoted).collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// A cell in quotes where it holds a quote, a comma or the end of a line; a text that a spreadsheet would take for a
-/// formula begins with an apostrophe, as those programs mark texts.
+/// A cell in quotes where it holds a quote, a comma or the end of a line; a text that a spreadsheet would
+/// take for a formula begins with an apostrophe, as those programs mark texts.
 fn quoted(cell: String) -> String {
     let is_formula = cell.starts_with(['=', '+', '-', '@', '\t']) && cell.parse::<f64>().is_err();
     let cell = if is_formula { format!("'{cell}") } else { cell };

@@ -1,4 +1,5 @@
-//! From what is asked for to a study: variants, their plugins built for every scenario, refusals before the first run.
+//! From what is asked for to a study: variants, their plugins built for every scenario, refusals before the
+//! first run.
 
 use super::{LeftOut, Machine, RunKey, Seeds, Shard, Study, StudyFormat, StudyScenario, Variant};
 use super::{STUDY_VERSION, StudyError};
@@ -58,7 +59,8 @@ impl VariantDraft {
         Self { name, changes }
     }
 
-    /// The choices of a scenario with the changes; plugins before settings, in whatever order they were given.
+    /// The choices of a scenario with the changes; plugins before settings, in whatever order they were
+    /// given.
     fn choices(&self, base: &Choices) -> Choices {
         let mut choices = base.clone();
         let (plugins, settings): (Vec<&Change>, Vec<&Change>) =
@@ -78,7 +80,8 @@ impl VariantDraft {
     }
 }
 
-/// The full factorial: a variant for every way to take one change from each factor. The first takes the first of each: the baseline.
+/// The full factorial: a variant for every way to take one change from each factor. The first takes the first
+/// of each: the baseline.
 pub fn factorial(factors: &[Vec<Change>]) -> Vec<VariantDraft> {
     let mut combinations: Vec<Vec<Change>> = vec![Vec::new()];
     for factor in factors {

@@ -10,7 +10,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
 
-/// How the threads are called that make runs: a program that wants to hear nothing of their panics, which become rows, can tell by this.
+/// How the threads are called that make runs: a program that wants to hear nothing of their panics, which
+/// become rows, can tell by this.
 pub const RUN_THREAD: &str = "regrasp-run";
 
 /// What a thread that plans may use: as much as the main thread of a program has.
@@ -46,7 +47,8 @@ pub struct Execution<'a> {
     pub audit: bool,
     /// Whether the plan of every run is kept, and not only the baseline's.
     pub keep_plans: bool,
-    /// Makes runs in processes of their own. Without it, a run in whose midst an earlier process ended is a failed row.
+    /// Makes runs in processes of their own. Without it, a run in whose midst an earlier process ended is a
+    /// failed row.
     pub isolate: Option<&'a dyn Isolate>,
     /// Whether all runs are made so, and not only those in whose midst an earlier process ended.
     pub isolate_all: bool,
@@ -65,8 +67,8 @@ pub fn execute(
     keys.retain(|key| !folder.holds(*key));
     let (begun, before) = Begun::open(folder.path())?;
     let suspects: BTreeSet<RunKey> = before.into_iter().collect();
-    // Runs that are compared follow each other, so that whatever slows the machine down for a while slows down all of them; with each seed
-    // another variant is first, since the first meets cold caches.
+    // Runs that are compared follow each other, so that whatever slows the machine down for a while slows
+    // down all of them; with each seed another variant is first, since the first meets cold caches.
     let variants = prepared.study.variants.len() as u64;
     keys.sort_by_key(|key| (key.scenario, key.seed, key.seed.wrapping_add(key.variant as u64) % variants));
     with.progress.begin(total - keys.len(), total);
@@ -95,7 +97,8 @@ fn make_and_keep(job: &Job<'_>, folder: &mut Folder, with: &Execution<'_>) -> Re
         for _ in 0..with.threads.clamp(1, job.keys.len().max(1)) {
             let sender = sender.clone();
             let builder = thread::Builder::new().name(RUN_THREAD.into()).stack_size(STACK);
-            // Where the system grants no more threads those that there are do the work; without any the first run is never made.
+            // Where the system grants no more threads those that there are do the work; without any the first
+            // run is never made.
             let _ = builder.spawn_scoped(scope, move || job.work(&sender));
         }
         drop(sender);
@@ -145,7 +148,8 @@ impl Job<'_> {
         }
     }
 
-    /// Makes a run, in a process of its own where that is wished or advisable; `None` where the study was cancelled meanwhile.
+    /// Makes a run, in a process of its own where that is wished or advisable; `None` where the study was
+    /// cancelled meanwhile.
     fn make(&self, key: RunKey) -> Option<Ended> {
         let study = &self.machinery.prepared.study;
         let suspect = self.suspects.contains(&key);

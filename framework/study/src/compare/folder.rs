@@ -23,7 +23,8 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Opens a folder for a study, new or begun before; `study` then is as it was begun, with this machine added.
+    /// Opens a folder for a study, new or begun before; `study` then is as it was begun, with this machine
+    /// added.
     ///
     /// A folder that holds another study, or something else, is refused.
     pub fn open(path: &Path, study: &mut Study) -> Result<Self, StudyError> {
@@ -110,19 +111,22 @@ impl Study {
         RunName { scenario, variant, seed: key.seed }
     }
 
-    /// Whether the study keeps the plan of this run: for each scenario that of the first variant with the first seed.
+    /// Whether the study keeps the plan of this run: for each scenario that of the first variant with the
+    /// first seed.
     pub(super) fn keeps_plan(&self, key: RunKey) -> bool {
         let first = (0..self.variants.len()).find(|&variant| !self.is_left_out(key.scenario, variant));
         key.seed == self.seeds.first && Some(key.variant) == first
     }
 }
 
-/// Where a study keeps a plan of a scenario, that of the first variant with the first seed; there is none where that run reached no goal.
+/// Where a study keeps a plan of a scenario, that of the first variant with the first seed; there is none
+/// where that run reached no goal.
 pub fn plan_path(folder: &Path, study: &Study, scenario: usize) -> PathBuf {
     folder.join(PLANS).join(format!("{}.json", study.file_stem(scenario)))
 }
 
-/// Where a study that keeps all plans keeps that of any other run: `plans/SCENARIO/VARIANT-SEED.json`, variants counted from 0.
+/// Where a study that keeps all plans keeps that of any other run: `plans/SCENARIO/VARIANT-SEED.json`,
+/// variants counted from 0.
 pub fn further_plan_path(folder: &Path, study: &Study, key: RunKey) -> PathBuf {
     let stem = study.file_stem(key.scenario);
     folder.join(PLANS).join(stem).join(format!("{}-{}.json", key.variant, key.seed))

@@ -1,7 +1,9 @@
-//! Comparisons of plugin combinations: every scenario, planned by every variant, with every seed; every plan verified.
+//! Comparisons of plugin combinations: every scenario, planned by every variant, with every seed; every plan
+//! verified.
 //!
-//! [`prepare`] makes a [`Study`] of what is asked for, [`Folder::open`] begins or resumes it in a folder, [`execute`] makes its runs and
-//! keeps each as soon as it has ended, [`Folder::finish`] writes the results. Parts of a study, made elsewhere, are joined by [`merge`].
+//! [`prepare`] makes a [`Study`] of what is asked for, [`Folder::open`] begins or resumes it in a folder,
+//! [`execute`] makes its runs and keeps each as soon as it has ended, [`Folder::finish`] writes the results.
+//! Parts of a study, made elsewhere, are joined by [`merge`].
 
 mod analysis;
 mod begun;

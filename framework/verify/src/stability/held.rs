@@ -17,7 +17,8 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Effort over its limit per unit of normal, tangential (a vector) and torsional force in the contact's scaled coordinates, times `unit` (N).
+    /// Effort over its limit per unit of normal, tangential (a vector) and torsional force in the contact's
+    /// scaled coordinates, times `unit` (N).
     pub(crate) fn of(&self, contact: &Contact, length: f64, unit: f64) -> (f64, Vec3, f64) {
         let scale = unit / self.limit;
         let column = self.column_O * scale;
@@ -35,7 +36,8 @@ pub(crate) struct Held {
 impl Chains {
     /// What the joints of a finger can do at its contact at `p_OC` (m) with the inward unit normal `n_O`.
     ///
-    /// A revolute joint moves the fingertip's point at p with axis × (p - origin), a prismatic one with its axis.
+    /// A revolute joint moves the fingertip's point at p with axis × (p - origin), a prismatic one with its
+    /// axis.
     pub(crate) fn rows(&self, finger: usize, frames: &Frames, p_OC: &Vec3, n_O: &Vec3) -> Vec<Row> {
         let chain = &self.fingers[finger];
         let to_O = frames.X_HO.rotation.inverse();

@@ -1,4 +1,5 @@
-//! Forces within the joints' efforts that hold the object's weight and a load, at a share of the friction: a proof by arithmetic.
+//! Forces within the joints' efforts that hold the object's weight and a load, at a share of the friction: a
+//! proof by arithmetic.
 
 use super::force::{Contact, Correction, Forces, LEAST_SLACK};
 use super::held::Held;
@@ -150,7 +151,8 @@ impl HoldingCheck {
         wanted
     }
 
-    /// Brings forces to exactly the wanted wrenches, checks cones and efforts, and carries them on; `Err` gives the slack that is too little.
+    /// Brings forces to exactly the wanted wrenches, checks cones and efforts, and carries them on; `Err`
+    /// gives the slack that is too little.
     fn check(
         &mut self,
         held: &Held,
@@ -167,7 +169,8 @@ impl HoldingCheck {
                 residual += contact.wrench(&forces[i]);
                 slack = slack.min(self.slack(held, i, forces));
             }
-            // What balances the residual exactly is smaller than residual/singular, and must leave neither cones nor efforts.
+            // What balances the residual exactly is smaller than residual/singular, and must leave neither
+            // cones nor efforts.
             let steepest = 1.0 + self.steepest(held);
             if !(slack >= LEAST_SLACK && residual.norm() * steepest <= 0.5 * correction.singular * slack) {
                 return Err(slack.min(0.0));
@@ -178,7 +181,8 @@ impl HoldingCheck {
         Ok(least)
     }
 
-    /// The room of one contact's force: to its cone, to the largest normal force, and of its joints' efforts (of the limit).
+    /// The room of one contact's force: to its cone, to the largest normal force, and of its joints' efforts
+    /// (of the limit).
     fn slack(&self, held: &Held, i: usize, forces: &Forces) -> f64 {
         let (contact, force) = (&held.contacts[i], &forces[i]);
         let mut slack = force.slack();

@@ -163,7 +163,8 @@ impl HoldsCheck {
         figures
     }
 
-    /// The largest multiple of `more` that may be added to the forces within cones and efforts; 0 where they are outside already.
+    /// The largest multiple of `more` that may be added to the forces within cones and efforts; 0 where they
+    /// are outside already.
     fn reach(&self, held: &Held, forces: &Forces, more: &Forces) -> f64 {
         let mut reach = 1e6_f64;
         for i in 0..held.contacts.len() {

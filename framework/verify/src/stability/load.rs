@@ -1,4 +1,5 @@
-//! Bounded contact forces that hold the object's weight and a load: a proof by arithmetic, whoever found the forces.
+//! Bounded contact forces that hold the object's weight and a load: a proof by arithmetic, whoever found the
+//! forces.
 
 use super::force::{Contact, Correction, Forces, LEAST_SLACK};
 use super::socp;
@@ -31,8 +32,8 @@ struct Held {
 }
 
 impl LoadCheck {
-    /// For an object of this weight (N, in H); torques are taken about its centre of mass and divided by `length` (m). `None` where the load has
-    /// no meaning.
+    /// For an object of this weight (N, in H); torques are taken about its centre of mass and divided by
+    /// `length` (m). `None` where the load has no meaning.
     pub(crate) fn new(load: &Load, weight_H: Vec3, length: f64) -> Option<Self> {
         let Load { disturbance_force, disturbance_torque, max_normal_force } = *load;
         let sizes = [disturbance_force, disturbance_torque, max_normal_force, length];
@@ -55,7 +56,8 @@ impl LoadCheck {
         self.carried = None;
     }
 
-    /// The slack with which the contacts are proved to hold the load on the object in this orientation; `Err` gives what could not be proved.
+    /// The slack with which the contacts are proved to hold the load on the object in this orientation; `Err`
+    /// gives what could not be proved.
     pub(crate) fn prove(&mut self, contacts: &[Contact], R_HO: &Rotation) -> Result<f64, f64> {
         if let Some((before, R, found)) = &self.last
             && before == contacts

@@ -1,7 +1,8 @@
 //! Whether the fingers that hold the object hold it stably, at every sample of the plan.
 //!
-//! Force closure by the largest ball of wrenches: C. Ferrari, J. Canny, "Planning optimal grasps", ICRA 1992; internal forces that prove it: L. Han,
-//! J. Trinkle, Z. Li, "Grasp analysis as linear matrix inequality problems", IEEE T-RA 2000.
+//! Force closure by the largest ball of wrenches: C. Ferrari, J. Canny, "Planning optimal grasps", ICRA 1992;
+//! internal forces that prove it: L. Han, J. Trinkle, Z. Li, "Grasp analysis as linear matrix inequality
+//! problems", IEEE T-RA 2000.
 
 mod force;
 mod held;
@@ -25,7 +26,8 @@ const MOST_FAILURES: usize = 100;
 /// Grasps of smallest margin for which the best force is sought again: each one's bound can only rise.
 const MOST_REFINEMENTS: usize = 24;
 
-/// The part of the solver's slack below which a carried force is no longer taken: the best one at this grasp may be far better.
+/// The part of the solver's slack below which a carried force is no longer taken: the best one at this grasp
+/// may be far better.
 const DWINDLED: f64 = 0.4;
 
 /// Follows the grasp along the plan.
@@ -105,7 +107,8 @@ impl StabilityCheck {
         self.load.iter_mut().for_each(LoadCheck::start);
     }
 
-    /// Takes in one sample, with the object's orientation and where the fingers touch that hold in this segment.
+    /// Takes in one sample, with the object's orientation and where the fingers touch that hold in this
+    /// segment.
     ///
     /// `moving` does not hold at all while it is lifted, its contacts at both ends included.
     pub(crate) fn sample(
@@ -173,8 +176,8 @@ impl StabilityCheck {
         holding.filter_map(|(_, touch)| touch.map(contact)).collect()
     }
 
-    /// A proof for the grasp from the carried force, else (or where its slack has dwindled) from the solver's; `Err` gives the slack that the
-    /// solver could not bring above the least one.
+    /// A proof for the grasp from the carried force, else (or where its slack has dwindled) from the
+    /// solver's; `Err` gives the slack that the solver could not bring above the least one.
     fn prove(&mut self, contacts: &[Contact]) -> Result<Proof, f64> {
         let carried = self.carried.as_ref().and_then(|carried| force::prove(contacts, &carried.forces));
         if let Some(proof) = carried
@@ -187,8 +190,9 @@ impl StabilityCheck {
         Ok(solved)
     }
 
-    /// The figure of one grasp by itself: the certified margin of the solver's best force; the slack of the solver's best forces where the
-    /// plan claims that they hold a load. 0 or less where the grasp is not proved stable, `None` where stability is not checked.
+    /// The figure of one grasp by itself: the certified margin of the solver's best force; the slack of the
+    /// solver's best forces where the plan claims that they hold a load. 0 or less where the grasp is not
+    /// proved stable, `None` where stability is not checked.
     pub(crate) fn figure(
         &mut self,
         leg: &Leg<'_>,
@@ -207,7 +211,8 @@ impl StabilityCheck {
         Some(lower)
     }
 
-    /// The smallest margin, for the certificate: bounds that a carried force left loose are sharpened with the best one.
+    /// The smallest margin, for the certificate: bounds that a carried force left loose are sharpened with
+    /// the best one.
     pub(crate) fn extreme(&mut self) -> Option<Extreme> {
         for _ in 0..MOST_REFINEMENTS {
             let worst = self.margins.iter_mut().min_by(|a, b| a.lower.total_cmp(&b.lower))?;

@@ -10,10 +10,12 @@ use regrasp_api::{MAX_FINGERS, Vec3, any_orthogonal};
 /// Variables of one contact: normal, two tangential, torsional.
 const OF_CONTACT: usize = 4;
 
-/// Maximises the slack t over all forces y with G y = 0, Σ normal = 1 and normal - t ≥ |(tangential, torsional)| for each contact, by Clarabel
-/// (Goulart and Chen, "Clarabel: an interior-point solver for conic programs with quadratic objectives", 2024).
+/// Maximises the slack t over all forces y with G y = 0, Σ normal = 1 and normal - t ≥ |(tangential,
+/// torsional)| for each contact, by Clarabel (Goulart and Chen, "Clarabel: an interior-point solver for conic
+/// programs with quadratic objectives", 2024).
 ///
-/// Returns the forces and t, which still have to be checked, whatever the solver thinks of them; `None` where it finds none.
+/// Returns the forces and t, which still have to be checked, whatever the solver thinks of them; `None` where
+/// it finds none.
 pub(crate) fn best_forces(contacts: &[Contact]) -> Option<(Forces, f64)> {
     let variables = OF_CONTACT * contacts.len() + 1;
     let tangents: Vec<[Vec3; 2]> = contacts.iter().map(tangents).collect();
@@ -24,7 +26,8 @@ pub(crate) fn best_forces(contacts: &[Contact]) -> Option<(Forces, f64)> {
     Some(forces_of(&problem.solve()?, &tangents))
 }
 
-/// Maximises the slack t over all forces y with G y = `wanted`, normal ≤ 1 - t and normal - t ≥ |(tangential, torsional)| for each contact.
+/// Maximises the slack t over all forces y with G y = `wanted`, normal ≤ 1 - t and normal - t ≥ |(tangential,
+/// torsional)| for each contact.
 pub(crate) fn best_forces_for(contacts: &[Contact], wanted: &Vector6<f64>) -> Option<(Forces, f64)> {
     let tangents: Vec<[Vec3; 2]> = contacts.iter().map(tangents).collect();
     let mut problem = Problem::new(OF_CONTACT * contacts.len() + 1);
@@ -34,7 +37,8 @@ pub(crate) fn best_forces_for(contacts: &[Contact], wanted: &Vector6<f64>) -> Op
     Some(forces_of(&problem.solve()?, &tangents))
 }
 
-/// The same within the joints' efforts: ± effort + t ≤ 1 for each joint, normal + t ≤ `most` where there is one, t ≤ 1; forces over `unit` (N).
+/// The same within the joints' efforts: ± effort + t ≤ 1 for each joint, normal + t ≤ `most` where there is
+/// one, t ≤ 1; forces over `unit` (N).
 pub(crate) fn best_within(
     held: &Held,
     length: f64,
@@ -179,7 +183,8 @@ impl Problem {
         let settings = DefaultSettings { verbose: false, ..Default::default() };
         let mut solver = DefaultSolver::new(&P, &q, &A, &self.b, &self.cones, settings).ok()?;
         solver.solve();
-        // Where rounding stops the solver short of its own tolerances, its last iterate is nearly the best: the caller checks whatever comes from here.
+        // Where rounding stops the solver short of its own tolerances, its last iterate is nearly the best:
+        // the caller checks whatever comes from here.
         let good = matches!(
             solver.solution.status,
             SolverStatus::Solved

@@ -30,7 +30,8 @@ pub fn problem() -> Problem {
     problem
 }
 
-/// Moves the object from `q` to `X_HO` in `steps` steps, every holding fingertip staying where it is on the object.
+/// Moves the object from `q` to `X_HO` in `steps` steps, every holding fingertip staying where it is on the
+/// object.
 pub fn pinned(hand: &ChainHand, q: &Configuration, X_HO: &Pose, steps: usize) -> Segment {
     let mut states = vec![q.clone()];
     for step in 1..=steps {

@@ -1,9 +1,9 @@
 //! Collision and distance between hand, object, palm and obstacles.
 //!
-//! The search asks "farther apart than the clearance?". Rods (segments with a thickness) answer among themselves in closed
-//! form; boxes, convex primitives and meshes answer by bounds from both sides; only where those leave a doubt (a shell of
-//! the width of the object's faceting error) does parry3d decide. So the answers are exact: nothing free is refused
-//! because of a bound, and nothing close is passed.
+//! The search asks "farther apart than the clearance?". Rods (segments with a thickness) answer among
+//! themselves in closed form; boxes, convex primitives and meshes answer by bounds from both sides; only
+//! where those leave a doubt (a shell of the width of the object's faceting error) does parry3d decide. So
+//! the answers are exact: nothing free is refused because of a bound, and nothing close is passed.
 
 mod block;
 mod body;
@@ -37,8 +37,9 @@ const ROUNDING: f64 = 1e-12;
 
 /// Collision and distance of one hand, one object and obstacles, with a fixed clearance.
 ///
-/// Never compared: consecutive links of a finger (those between which no link has a shape), a fingertip and its own link, the
-/// palm and a finger's first link if they touch in the resting posture, and two parts of one body.
+/// Never compared: consecutive links of a finger (those between which no link has a shape), a fingertip and
+/// its own link, the palm and a finger's first link if they touch in the resting posture, and two parts of
+/// one body.
 pub struct SceneClearance {
     fingers: Vec<FingerBodies>,
     fixed: Vec<Fixed>,
@@ -47,7 +48,8 @@ pub struct SceneClearance {
 }
 
 impl SceneClearance {
-    /// Prepares the bodies; `clearance` (m) is what the `*_free` calls keep between them. Meshes are given in place.
+    /// Prepares the bodies; `clearance` (m) is what the `*_free` calls keep between them. Meshes are given in
+    /// place.
     pub fn new(
         hand: Arc<ChainHand>,
         object: &ObjectModel,

@@ -44,10 +44,12 @@ fn check_body(description: &ObjectDescription) -> Result<(), WorldError> {
     check_range("object.friction", description.friction, 0.0, 10.0, "")
 }
 
-/// A closed, outward mesh of `primitive` with about `facets` facets (12 for a cuboid), its vertices on the true surface.
+/// A closed, outward mesh of `primitive` with about `facets` facets (12 for a cuboid), its vertices on the
+/// true surface.
 ///
-/// Sphere and ellipsoid have 20 · 4^k facets (an icosahedron, quartered), the others 2 for each cell of a grid.
-/// Lengths that are not positive and finite, or differ by many orders of magnitude, are refused as the mesh's fault.
+/// Sphere and ellipsoid have 20 · 4^k facets (an icosahedron, quartered), the others 2 for each cell of a
+/// grid. Lengths that are not positive and finite, or differ by many orders of magnitude, are refused as the
+/// mesh's fault.
 pub fn primitive_mesh(primitive: &Primitive, facets: usize) -> Result<Mesh, MeshError> {
     let (vertices, facets) = pattern::facets_of(primitive, facets);
     Mesh::new(vertices, facets)

@@ -18,8 +18,8 @@ pub struct RapierCheckedSettings {
     /// Largest angle of the object from the planned orientation (rad).
     #[schemars(range(min = 1e-4, max = 3.0), extend("x-unit" = "rad"))]
     pub max_angle: f64,
-    /// Largest net slip of a contact in one transfer (m). Friction in the simulation is a little soft: a contact that sticks creeps by up to
-    /// 0.1 mm at the default time step, in proportion to it.
+    /// Largest net slip of a contact in one transfer (m). Friction in the simulation is a little soft: a
+    /// contact that sticks creeps by up to 0.1 mm at the default time step, in proportion to it.
     #[schemars(range(min = 1e-5, max = 1.0), extend("x-unit" = "m"))]
     pub max_slip: f64,
     /// Largest gap between a holding fingertip and the object (m).
@@ -34,7 +34,8 @@ pub struct RapierCheckedSettings {
     /// Damping of the motors per stiffness (s).
     #[schemars(range(min = 1e-4, max = 1.0), extend("x-unit" = "s"))]
     pub damping_time: f64,
-    /// Friction coefficient in the simulation; the object's own where absent. The forces are planned for the object's own.
+    /// Friction coefficient in the simulation; the object's own where absent. The forces are planned for the
+    /// object's own.
     #[schemars(range(min = 0.0, max = 10.0), extend("x-unit" = "1"))]
     #[schemars(example = 0.8)]
     pub friction: Option<f64>,
@@ -42,11 +43,13 @@ pub struct RapierCheckedSettings {
     #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "kg"))]
     #[schemars(example = 0.1)]
     pub mass: Option<f64>,
-    /// Most normal force of one contact (N); where absent the greater of 2 N and three times the object's weight.
+    /// Most normal force of one contact (N); where absent the greater of 2 N and three times the object's
+    /// weight.
     #[schemars(range(min = 0.01, max = 1e4), extend("x-unit" = "N"))]
     #[schemars(example = 5.0)]
     pub grip: Option<f64>,
-    /// What part of its effort limit a joint may use to hold the object; the rest is for motion and correction.
+    /// What part of its effort limit a joint may use to hold the object; the rest is for motion and
+    /// correction.
     #[schemars(range(min = 0.01, max = 1.0), extend("x-unit" = "1"))]
     pub effort_share: f64,
     /// What part of the joints' velocity limits the motion uses.

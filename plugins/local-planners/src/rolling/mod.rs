@@ -23,8 +23,8 @@ const SLOT: Slot = Slot::TransferPlanner;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RollingSettings {
-    /// What part of the task's tolerances for closure and slip the motion may use. Default: half, as the plan's
-    /// meaning asks.
+    /// What part of the task's tolerances for closure and slip the motion may use. Default: half, as the
+    /// plan's meaning asks.
     #[schemars(range(min = 0.01, max = 1.0), extend("x-unit" = "1"))]
     pub tolerance_share: f64,
     /// How often a step may be halved before the contact counts as lost. Our choice.
@@ -40,21 +40,24 @@ impl Default for RollingSettings {
 
 impl Settings for RollingSettings {}
 
-/// Moves the object straight to a pose while every holding fingertip rolls on it without slip; free fingers stay.
+/// Moves the object straight to a pose while every holding fingertip rolls on it without slip; free fingers
+/// stay.
 ///
-/// At every instant the material points of fingertip and object at each contact have the same velocity (Cole, Hauser, Sastry,
-/// "Kinematics and control of multifingered hands with rolling contact", IEEE T-AC 1989; Montana, "The kinematics of contact and
-/// grasp", IJRR 1988). This is solved for the joint speeds of each finger and integrated numerically, as the paper does (Sahbani,
-/// Saut, Perdereau, SSD 2007, section IV.C), by the midpoint rule. Departures from it: the normal is the direction from the closest point to
-/// the fingertip's centre, which needs no parameterisation of the object and is exact on its facets; after each step the centre is moved along that
-/// normal onto the offset surface, so that closure does not drift; steps are halved until the interpolated motion keeps its
-/// share of the tolerances.
+/// At every instant the material points of fingertip and object at each contact have the same velocity (Cole,
+/// Hauser, Sastry, "Kinematics and control of multifingered hands with rolling contact", IEEE T-AC 1989;
+/// Montana, "The kinematics of contact and grasp", IJRR 1988). This is solved for the joint speeds of each
+/// finger and integrated numerically, as the paper does (Sahbani, Saut, Perdereau, SSD 2007, section IV.C),
+/// by the midpoint rule. Departures from it: the normal is the direction from the closest point to the
+/// fingertip's centre, which needs no parameterisation of the object and is exact on its facets; after each
+/// step the centre is moved along that normal onto the offset surface, so that closure does not drift; steps
+/// are halved until the interpolated motion keeps its share of the tolerances.
 ///
 /// The fingertips are balls: a hand that declares points is refused when the plugin is built from its entry.
 ///
-/// Stops at the last valid state: at a joint's limit, out of reach or at a singularity (`reach`), at a collision, where the grasp is no
-/// longer stable, where net slip at a state uses up its share (within a step the tip may stray along the surface by as much as closure
-/// allows across it), and where a contact is lost, jumps on a concave edge, or nearly touches at a second place (`closure`).
+/// Stops at the last valid state: at a joint's limit, out of reach or at a singularity (`reach`), at a
+/// collision, where the grasp is no longer stable, where net slip at a state uses up its share (within a step
+/// the tip may stray along the surface by as much as closure allows across it), and where a contact is lost,
+/// jumps on a concave edge, or nearly touches at a second place (`closure`).
 #[derive(Clone, Debug)]
 pub struct Rolling {
     settings: RollingSettings,
@@ -112,7 +115,8 @@ impl LocalPlanner for Rolling {
 }
 
 impl Rolling {
-    /// What [`LocalPlanner::connect`] does, a refusal not yet counted: it is left to who builds upon the motion.
+    /// What [`LocalPlanner::connect`] does, a refusal not yet counted: it is left to who builds upon the
+    /// motion.
     pub(crate) fn roll(
         &self,
         task: &Task<'_>,
@@ -145,7 +149,8 @@ impl Rolling {
     }
 }
 
-/// Makes `next` the next valid state, or says why there is none: stability before collision, because it costs less.
+/// Makes `next` the next valid state, or says why there is none: stability before collision, because it costs
+/// less.
 fn obstacle(
     roller: &Roller<'_>,
     state: &State,
@@ -165,7 +170,8 @@ fn obstacle(
     Ok(free.is_err().then_some(Reason::Collision))
 }
 
-/// Steps as far as the pace, the state and what remains allow, halving until the contacts stay closed in between.
+/// Steps as far as the pace, the state and what remains allow, halving until the contacts stay closed in
+/// between.
 fn step(roller: &Roller<'_>, state: &State, next: &mut State, pace: &mut Pace) -> Result<(), Reason> {
     if state.longest < pace.finest {
         // So close to a singularity that a joint races.

@@ -1,14 +1,15 @@
 //! `surface/geodesic`: exact shortest paths on the object's facets, and the fingertip's path above them.
 //!
-//! The facets are the true surface. Contacts live on the offset surface (object ⊕ fingertip ball): on a facet the normal
-//! is the facet's, on a convex edge it is any direction between those of its two facets.
+//! The facets are the true surface. Contacts live on the offset surface (object ⊕ fingertip ball): on a facet
+//! the normal is the facet's, on a convex edge it is any direction between those of its two facets.
 //!
-//! - *Geodesic*: exact windows led towards the target (`search`), for any closed mesh, to the relative `tolerance`. The
-//!   fingertip rolls over the path's facets (`lift`); on solids that are not convex it slides over the hollows that it
-//!   cannot enter (`hollows`). `false` where the mesh's parts are not connected, where an end cannot be touched, or where
-//!   the fingertip would have to leap.
+//! - *Geodesic*: exact windows led towards the target (`search`), for any closed mesh, to the relative
+//!   `tolerance`. The fingertip rolls over the path's facets (`lift`); on solids that are not convex it
+//!   slides over the hollows that it cannot enter (`hollows`). `false` where the mesh's parts are not
+//!   connected, where an end cannot be touched, or where the fingertip would have to leap.
 //! - *Projection*: a walk from the hint, certain outside of convex solids; else a hierarchy of boxes.
-//! - *Walk*: straightest geodesic; on solids that are not convex the end is pushed out to where the fingertip touches.
+//! - *Walk*: straightest geodesic; on solids that are not convex the end is pushed out to where the fingertip
+//!   touches.
 //! - *Edge distance*: straight, which is never longer than along the surface.
 
 mod bound;
@@ -58,12 +59,14 @@ fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GeodesicSettings {
-    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, a neutral choice.
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, a
+    /// neutral choice.
     #[schemars(range(min = 1.0, max = 180.0), extend("x-unit" = "degrees"))]
     pub sharp_angle_deg: f64,
-    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked;
-    /// at most a fifth of its radius r. A spike between two places sinks in by step²/(8 r) at most. Default
-    /// 0.001, the step of a transfer: 13 µm for a radius of 10 mm, less than a plan's tolerance of closure.
+    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is
+    /// checked; at most a fifth of its radius r. A spike between two places sinks in by step²/(8 r) at most.
+    /// Default 0.001, the step of a transfer: 13 µm for a radius of 10 mm, less than a plan's tolerance of
+    /// closure.
     #[schemars(range(min = 1e-5, max = 1e-2), extend("x-unit" = "m"))]
     pub step: f64,
     /// By how much a path may be longer than the shortest one, relative. Default 2e-4, a neutral choice.

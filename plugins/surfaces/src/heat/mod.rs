@@ -1,31 +1,35 @@
 //! `surface/heat`: shortest paths by the heat method, straightened.
 //!
-//! Crane, Weischedel & Wardetzky find the distances of all points from one by two sparse linear systems: heat flows from
-//! the point for a short time, and the function whose gradients point along its flow with unit length is the distance. Both
-//! matrices depend on the object alone and are factorised once, when the surface is built; a path costs two solutions for
-//! each of its ends.
+//! Crane, Weischedel & Wardetzky find the distances of all points from one by two sparse linear systems: heat
+//! flows from the point for a short time, and the function whose gradients point along its flow with unit
+//! length is the distance. Both matrices depend on the object alone and are factorised once, when the surface
+//! is built; a path costs two solutions for each of its ends.
 //!
 //! # How exact
-//! The field is as exact as its mesh is fine: facets are cut into four until there are at least `fewest_facets`, and both systems are
-//! set up on the intrinsic Delaunay triangulation of the vertices (`delaunay`), so that thin facets do no harm. By itself the field is
-//! off by some per cent, so it only says which ways a path may take: down the field from either end, and through the places between where
-//! the sum of both fields is lowest (`sides`), once for each side of an obstacle; the best of them is then tried on the other
-//! side of each sharp corner that it passes. Each way's strip of facets is unfolded and pulled
-//! tight in it and in the strips around its bends (Xin & Wang 2007), and the shortest is taken. It is locally shortest on the
-//! facets as they are, the same length both ways, and within 2 % of the shortest in the tests, nearly always the shortest.
+//! The field is as exact as its mesh is fine: facets are cut into four until there are at least
+//! `fewest_facets`, and both systems are set up on the intrinsic Delaunay triangulation of the vertices
+//! (`delaunay`), so that thin facets do no harm. By itself the field is off by some per cent, so it only says
+//! which ways a path may take: down the field from either end, and through the places between where the sum
+//! of both fields is lowest (`sides`), once for each side of an obstacle; the best of them is then tried on
+//! the other side of each sharp corner that it passes. Each way's strip of facets is unfolded and pulled
+//! tight in it and in the strips around its bends (Xin & Wang 2007), and the shortest is taken. It is locally
+//! shortest on the facets as they are, the same length both ways, and within 2 % of the shortest in the
+//! tests, nearly always the shortest.
 //!
 //! # Cost
-//! Two solutions of each system for a path: about a millisecond with the default 3000 facets, 8 ms with 20,480 facets. Where single paths are
-//! asked for, `surface/geodesic` is tens to hundreds of times faster; what the heat method shows is the cost of all distances at once.
-//! Preparation: 25 ms and 3 MB for 1,280 facets (cut to 5,120), 0.15 s and 40 MB for 20,480.
+//! Two solutions of each system for a path: about a millisecond with the default 3000 facets, 8 ms with
+//! 20,480 facets. Where single paths are asked for, `surface/geodesic` is tens to hundreds of times faster;
+//! what the heat method shows is the cost of all distances at once. Preparation: 25 ms and 3 MB for 1,280
+//! facets (cut to 5,120), 0.15 s and 40 MB for 20,480.
 //!
 //! # Beside paths
-//! The fingertip's way above a path, samples, projections and walks are those of `surface/geodesic`. `false` in the same
-//! cases: parts that are not connected, ends that cannot be touched, a fingertip that would have to leap.
+//! The fingertip's way above a path, samples, projections and walks are those of `surface/geodesic`. `false`
+//! in the same cases: parts that are not connected, ends that cannot be touched, a fingertip that would have
+//! to leap.
 //!
 //! # Where it fails
-//! A field may have false minima where facets are extremely thin: the descent then ends there, and the rest of the strip crosses as few
-//! facets as possible, which may be far from shortest before it is pulled tight.
+//! A field may have false minima where facets are extremely thin: the descent then ends there, and the rest
+//! of the strip crosses as few facets as possible, which may be far from shortest before it is pulled tight.
 
 mod delaunay;
 mod descent;
@@ -70,8 +74,8 @@ fn build(json: &str, parts: &Parts<'_>) -> Built<dyn SurfaceParam> {
     Ok(Box::new(Heat::new(&settings, parts.object.contact_mesh(), parts.hand.fingertip_radius())?))
 }
 
-/// A vertex is a corner where its facets' angles differ from a full turn by more (rad): locally shortest paths on both sides of it can
-/// differ by per cents.
+/// A vertex is a corner where its facets' angles differ from a full turn by more (rad): locally shortest
+/// paths on both sides of it can differ by per cents.
 const CORNER: f64 = 0.3;
 /// Times that a path is led around the other side of a corner.
 const MOST_CORNERS: usize = 8;
@@ -86,11 +90,12 @@ pub struct HeatSettings {
     /// Time of the heat flow over the mean edge's length squared (no unit). Default 1, the paper's value.
     #[schemars(range(min = 0.1, max = 1000.0), extend("x-unit" = "1"))]
     pub smoothing: f64,
-    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, a neutral choice.
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, a
+    /// neutral choice.
     #[schemars(range(min = 1.0, max = 180.0), extend("x-unit" = "degrees"))]
     pub sharp_angle_deg: f64,
-    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked;
-    /// at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
+    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is
+    /// checked; at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
     #[schemars(range(min = 1e-5, max = 1e-2), extend("x-unit" = "m"))]
     pub step: f64,
 }
@@ -155,7 +160,8 @@ impl Heat {
         Descent { coarse, fine, phi, strip, target: *target }.run(from);
     }
 
-    /// The shortest of the straightened paths down both fields and through the places between, in `workspace.best`.
+    /// The shortest of the straightened paths down both fields and through the places between, in
+    /// `workspace.best`.
     fn search(&self, workspace: &mut Workspace, [start, end]: [&(Spot, FinePoint); 2]) {
         let coarse = &self.rolling.polyhedron;
         let Workspace { phi, divergence, sides, half, best, tried, .. } = workspace;

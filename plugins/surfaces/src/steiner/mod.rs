@@ -1,24 +1,28 @@
 //! `surface/steiner`: shortest paths over points on the edges, as the paper cites them.
 //!
-//! Lanthier, Maheshwari & Sack put *Steiner points* on the edges of a polyhedron, join those that lie on different edges
-//! of one facet, and find the shortest path of that graph. Here an edge of length e carries
-//! m = max(`fewest`, ⌈e / `spacing`⌉) points, each in the middle of one of m equal parts, so that no point of the edge is
-//! farther than e / 2m from one. The graph is made once for an object, and A* finds the paths in it.
+//! Lanthier, Maheshwari & Sack put *Steiner points* on the edges of a polyhedron, join those that lie on
+//! different edges of one facet, and find the shortest path of that graph. Here an edge of length e carries
+//! m = max(`fewest`, ⌈e / `spacing`⌉) points, each in the middle of one of m equal parts, so that no point of
+//! the edge is farther than e / 2m from one. The graph is made once for an object, and A* finds the paths in
+//! it.
 //!
 //! # Bound
-//! The graph's path is at most Σ eᵢ/mᵢ longer than the shortest one, summed over the edges that the shortest one crosses:
-//! moving each crossing to the nearest Steiner point lengthens the two pieces that meet there by eᵢ/2mᵢ each at most. Hence
-//! `spacing` for each crossing. [`Steiner::bound`] adds it up for a path. The paper's own points are the ends and the inner
-//! ends of equal parts; points at the vertices would make strips of facets ambiguous and the bound no better.
+//! The graph's path is at most Σ eᵢ/mᵢ longer than the shortest one, summed over the edges that the shortest
+//! one crosses: moving each crossing to the nearest Steiner point lengthens the two pieces that meet there by
+//! eᵢ/2mᵢ each at most. Hence `spacing` for each crossing. [`Steiner::bound`] adds it up for a path. The
+//! paper's own points are the ends and the inner ends of equal parts; points at the vertices would make
+//! strips of facets ambiguous and the bound no better.
 //!
 //! # Straightening
-//! With `straighten` (default) the strip of facets of the graph's path is unfolded, and the path pulled tight in it and in the
-//! strips around its bends: it becomes locally shortest, never longer than before. What is left of the bound is the case that
-//! the graph prefers a strip on the wrong side of a vertex. Without, the paths are those of the cited algorithm.
+//! With `straighten` (default) the strip of facets of the graph's path is unfolded, and the path pulled tight
+//! in it and in the strips around its bends: it becomes locally shortest, never longer than before. What is
+//! left of the bound is the case that the graph prefers a strip on the wrong side of a vertex. Without, the
+//! paths are those of the cited algorithm.
 //!
 //! # Beside paths
-//! The fingertip's way above a path, samples, projections and walks are those of `surface/geodesic`. `false` in the same
-//! cases: parts that are not connected, ends that cannot be touched, a fingertip that would have to leap.
+//! The fingertip's way above a path, samples, projections and walks are those of `surface/geodesic`. `false`
+//! in the same cases: parts that are not connected, ends that cannot be touched, a fingertip that would have
+//! to leap.
 //!
 //! # Cost
 //! About the number of points within an ellipse around the two ends, each with its neighbours in two facets.
@@ -73,11 +77,12 @@ pub struct SteinerSettings {
     pub spacing: f64,
     /// Whether paths are pulled tight in their strip of facets. Default true; false is the cited algorithm.
     pub straighten: bool,
-    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, a neutral choice.
+    /// An edge is sharp where its facets' normals differ by more than this angle (degrees). Default 30, a
+    /// neutral choice.
     #[schemars(range(min = 1.0, max = 180.0), extend("x-unit" = "degrees"))]
     pub sharp_angle_deg: f64,
-    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is checked;
-    /// at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
+    /// On solids that are not convex, the largest distance (m) between two places where the fingertip is
+    /// checked; at most a fifth of its radius. Default 0.001, as for `surface/geodesic`.
     #[schemars(range(min = 1e-5, max = 1e-2), extend("x-unit" = "m"))]
     pub step: f64,
 }
@@ -129,10 +134,11 @@ impl Steiner {
         Ok(Self { straighten: settings.straighten, rolling, graph })
     }
 
-    /// By how much (m) a path of this surface may be longer than one that crosses the facets of `shortest` in turn.
+    /// By how much (m) a path of this surface may be longer than one that crosses the facets of `shortest` in
+    /// turn.
     ///
-    /// Edges shared by consecutive facets count; where a path crosses a vertex, edges between the facets before and behind it
-    /// would have to be added.
+    /// Edges shared by consecutive facets count; where a path crosses a vertex, edges between the facets
+    /// before and behind it would have to be added.
     pub fn bound(&self, shortest: &SurfacePath) -> f64 {
         let polyhedron = &self.rolling.polyhedron;
         let part = |pair: &[Waypoint]| {

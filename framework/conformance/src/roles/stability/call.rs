@@ -70,7 +70,8 @@ pub(super) fn no_false_stable(subject: &Subject<'_>) -> Finding {
     }
 }
 
-/// Where stable means that a load is carried: one that no forces inside the cones can carry is not, whatever their size.
+/// Where stable means that a load is carried: one that no forces inside the cones can carry is not, whatever
+/// their size.
 fn no_false_carrying(test: &dyn StabilityTest, load: &Load) -> Finding {
     let (mut random, bench) = (random(17), Bench::free_sphere());
     let object = &bench.world.object;

@@ -46,7 +46,8 @@ impl Ground {
         let odd = |random: &mut Random| {
             let [a, b, _] = mesh.corners(random.index(mesh.facets().len()) as u32);
             let p = if random.index(2) == 0 { a } else { a.lerp(&b, random.unit()) };
-            // Straight out of the middle: between the normals that meet there, as the objects are round about it.
+            // Straight out of the middle: between the normals that meet there, as the objects are round about
+            // it.
             self.surface.project(&(p * 1.2), None).contact
         };
         let contact = |random: &mut Random, i: usize| match i % 3 {

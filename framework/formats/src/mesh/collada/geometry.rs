@@ -5,7 +5,8 @@ use super::super::{Raw, check_count};
 use super::{Element, File, child, children, numbers, place};
 use regrasp_api::Vec3;
 
-/// The triangles of a `<geometry>`, in its own frame and the file's unit; empty where it is no `<mesh>` or has only lines.
+/// The triangles of a `<geometry>`, in its own frame and the file's unit; empty where it is no `<mesh>` or
+/// has only lines.
 pub(super) fn read(file: &File<'_>, geometry: Element<'_>) -> Result<Raw, String> {
     let Some(mesh) = child(geometry, "mesh") else { return Ok((Vec::new(), Vec::new())) };
     let (mut vertices, mut facets) = (Vec::new(), Vec::new());
@@ -112,7 +113,8 @@ impl Kind {
     }
 }
 
-/// Where the corner's position stands among the indices of a corner, how many indices a corner has, and the positions.
+/// Where the corner's position stands among the indices of a corner, how many indices a corner has, and the
+/// positions.
 fn inputs(file: &File<'_>, primitive: Element<'_>) -> Result<(usize, usize, Vec<Vec3>), String> {
     let (mut stride, mut found) = (1, None);
     for input in children(primitive, "input") {

@@ -3,7 +3,8 @@
 use crate::compare::{Certified, MotionFigures, PHASES, RunRecord, RunStatus};
 use regrasp_api::{Reason, Slot};
 
-/// OMPL's own kinds of endings in its own order (`ompl::base::PlannerStatus`), so that logs of both programs can share a database; then ours.
+/// OMPL's own kinds of endings in its own order (`ompl::base::PlannerStatus`), so that logs of both programs
+/// can share a database; then ours.
 pub const STATUSES: [&str; 13] = [
     "Unknown status",
     "Invalid start",
@@ -35,7 +36,8 @@ fn status(run: &RunRecord) -> f64 {
 /// Reads a value off a run.
 type Reader = Box<dyn Fn(&RunRecord) -> Option<f64>>;
 
-/// A column: letters, digits and blanks, no digit first, no word of SQL; blanks become underscores in the database.
+/// A column: letters, digits and blanks, no digit first, no word of SQL; blanks become underscores in the
+/// database.
 pub struct Property {
     /// The name.
     pub name: String,

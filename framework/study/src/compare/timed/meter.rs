@@ -5,7 +5,8 @@ use regrasp_planner::Clock;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
-/// Of how many calls that lead to no others one is timed. A prime, so that it does not fall into step with the fingers.
+/// Of how many calls that lead to no others one is timed. A prime, so that it does not fall into step with
+/// the fingers.
 pub const PERIOD: u32 = 13;
 
 /// Who takes time: the plugin of a slot, or clearance.
