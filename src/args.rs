@@ -11,7 +11,8 @@ use std::path::PathBuf;
 #[command(
     name = "regrasp",
     version,
-    after_help = "Exit codes: 0 done; 2 bad input; 3 no plan within the budget; 4 a plan that does not verify, or a replay that does not arrive; 130 interrupted.\n\n\
+    after_help = "Exit codes: 0 done; 2 bad input; 3 no plan within the budget; 4 a plan that does not \
+        verify, or a replay that does not arrive; 130 interrupted.\n\n\
                   Example:\n  regrasp plan sphere -o plan.json && regrasp verify plan.json"
 )]
 pub struct Arguments {
@@ -57,9 +58,12 @@ impl Command {
 /// Plan a scenario, verify the plan, and write it to a file.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-`regrasp scenarios` lists the built-in scenarios, `regrasp plugins` the slots, their plugins and settings.\n\n\
-Ctrl-C and the time limit end the search and keep what was found: with `-o plan.json`, a motion that reaches some of the goals and \
-verifies goes to `plan.partial.json`. A plan that does not verify is never written under the wished name but to `plan.rejected.json`.\n\n\
+`regrasp scenarios` lists the built-in scenarios, `regrasp plugins` the slots, their plugins and \
+settings.\n\n\
+Ctrl-C and the time limit end the search and keep what was found: with `-o plan.json`, a motion that \
+reaches some of the goals and \
+verifies goes to `plan.partial.json`. A plan that does not verify is never written under the wished name \
+but to `plan.rejected.json`.\n\n\
 Examples:\n  regrasp plan sphere\n  regrasp plan my-problem.toml --seed 7 -o plan.json\n  \
 regrasp plan cubic --use stability-test=socp --set graph-strategy.end=0.8 --rejections")]
 pub struct PlanArgs {
@@ -141,9 +145,8 @@ pub struct VerifyArgs {
 
 /// List the plugins, or show one with its settings.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Examples:\n  regrasp plugins\n  regrasp plugins sampler\n  regrasp plugins stability-test/force-closure"
-)]
+#[command(after_help = "Examples:\n  regrasp plugins\n  regrasp plugins sampler\n  regrasp plugins \
+        stability-test/force-closure")]
 pub struct PluginsArgs {
     /// A role, to list its plugins; or a plugin's id, to show its settings.
     #[arg(value_name = "ROLE|ID")]
@@ -158,7 +161,8 @@ pub struct PluginsArgs {
 /// List the built-in scenarios, or print the file of one, as a start for your own.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  regrasp scenarios\n  regrasp scenarios sphere > my-problem.toml\n  regrasp scenarios four-finger > my-hand.toml"
+    after_help = "Examples:\n  regrasp scenarios\n  regrasp scenarios sphere > my-problem.toml\n  regrasp \
+        scenarios four-finger > my-hand.toml"
 )]
 pub struct ScenariosArgs {
     /// A built-in scenario or hand, to print its file.

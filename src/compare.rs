@@ -124,7 +124,8 @@ fn scenarios(args: &CompareArgs, registry: &Registry) -> Result<Vec<Scenario>, F
     let scenarios: Vec<Scenario> = scenarios.collect::<Result<_, _>>()?;
     match scenarios.is_empty() {
         true => Err(Failure::bad_input(
-            "nothing to plan: name scenarios, such as `regrasp compare sphere cubic …`, or give `--suite` or `--study`",
+            "nothing to plan: name scenarios, such as `regrasp compare sphere cubic …`, or give `--suite` \
+             or `--study`",
         )),
         false => Ok(scenarios),
     }

@@ -18,8 +18,10 @@ urdf  hand and object as URDF with their meshes, and the joints' trajectory as C
 mjcf  a MuJoCo model, and a trajectory of what its motors aim at, the grasp forces fed forward\n\
 csv   a table, one row a state: time, joints by name, object pose, contacts, forces\n\
 npz   the same as NumPy arrays\n\n\
-Lengths are metres, angles radians, forces newtons; H is the hand's frame, O the object's. Forces are what the fingertips exert on the object to hold it against \
-gravity, with the least share of the friction that the joints' efforts allow. Files are named after the plan.\n\n\
+Lengths are metres, angles radians, forces newtons; H is the hand's frame, O the object's. Forces are what \
+the fingertips exert on the object to hold it against \
+gravity, with the least share of the friction that the joints' efforts allow. Files are named after the \
+plan.\n\n\
 Examples:\n  regrasp export plan.json --to gltf\n  regrasp export plan.json --to mjcf,npz -o exported")]
 pub struct ExportArgs {
     /// A plan file.

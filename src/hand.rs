@@ -22,7 +22,8 @@ use values::{point, position, radius, range, rate};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 A scenario uses the URDF itself (`[hand] urdf = \"my-hand.urdf\"`, with keys of the same names as the \
-options here) or the hand file that `-o` writes (`[hand] file = \"my-hand.toml\"`), which can be edited. The position that is proposed for an \
+options here) or the hand file that `-o` writes (`[hand] file = \"my-hand.toml\"`), which can be edited. \
+The position that is proposed for an \
  object is a place to start from: \
 `regrasp plan` tells whether it is a good one.\n\n\
 Examples:\n  regrasp hand my-hand.urdf\n  regrasp hand my-hand.urdf --tips \

@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 /// feels.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-A scenario names the file itself: `shape = { kind = \"mesh\", file = \"part.stl\", scale = 0.001 }`. `--repair` makes what differs by rounding \
+A scenario names the file itself: `shape = { kind = \"mesh\", file = \"part.stl\", scale = 0.001 }`. \
+`--repair` makes what differs by rounding \
 one, leaves facets without area out and turns bodies the right way round; it fills no holes.\n\n\
 Examples:\n  regrasp object part.stl --scale 0.001\n  regrasp object scan.ply --fingertip-radius 0.008\n  \
 regrasp object part.stl --scale 0.001 --repair -o clean.stl")]

@@ -39,7 +39,8 @@ pub fn run(args: &ReferenceArgs) -> Result<(), Failure> {
 }
 
 /// Stands at the head of every generated page.
-const GENERATED: &str = "<!-- Made by `cargo run -- reference book/src/reference`: change what it describes, not this page. -->\n\n";
+const GENERATED: &str = "<!-- Made by `cargo run -- reference book/src/reference`: change what it \
+    describes, not this page. -->\n\n";
 
 fn scenario_page() -> String {
     let scenarios = scenario::SCENARIOS.iter().map(|file| file.text).chain([RARE]);
@@ -67,19 +68,26 @@ fn scenario_page() -> String {
 /// Keys that no built-in file uses.
 const RARE: &str = "\
 references = [\"the maker's drawings, 2025\"]\n\
-obstacle = [{ shape = { kind = \"box\", size = [0.2, 0.2, 0.01] } }, { shape = { kind = \"sphere\", radius = 0.02 } }]\n\
-palm = [{ shape = { kind = \"box\", size = [0.08, 0.08, 0.02] } }, { shape = { kind = \"sphere\", radius = 0.02 } }]\n";
+obstacle = [{ shape = { kind = \"box\", size = [0.2, 0.2, 0.01] } }, { shape = { kind = \"sphere\", radius \
+= 0.02 } }]\n\
+palm = [{ shape = { kind = \"box\", size = [0.08, 0.08, 0.02] } }, { shape = { kind = \"sphere\", radius = \
+0.02 } }]\n";
 
 const SCENARIO: &str = "\
 # Scenario files
 
-A scenario is a problem in a TOML or JSON file: hand, object, obstacles, start and goals, and optionally the plugins that solve it and the limits they \
-keep. `regrasp scenarios sphere > mine.toml` writes one to start from, `regrasp schema > scenario.schema.json` the same rules as a JSON schema \
+A scenario is a problem in a TOML or JSON file: hand, object, obstacles, start and goals, and optionally \
+the plugins that solve it and the limits they \
+keep. `regrasp scenarios sphere > mine.toml` writes one to start from, `regrasp schema > \
+scenario.schema.json` the same rules as a JSON schema \
 for editors. What is wrong with a file is refused with its line and the allowed values.
 
-Lengths are metres, angles radians (degrees where a key ends with `_deg`), masses kilograms, forces newtons; poses are given in the hand's \
-frame H unless the table says otherwise ([units and frames](units-and-frames.md)). Every number is finite. An unknown key is an error, so that \
-a misspelt one is not silently ignored. A *hand file* describes a hand in the same form; its keys are [below](#hand-files).
+Lengths are metres, angles radians (degrees where a key ends with `_deg`), masses kilograms, forces \
+newtons; poses are given in the hand's \
+frame H unless the table says otherwise ([units and frames](units-and-frames.md)). Every number is finite. \
+An unknown key is an error, so that \
+a misspelt one is not silently ignored. A *hand file* describes a hand in the same form; its keys are \
+[below](#hand-files).
 ";
 
 fn study_page() -> String {
@@ -99,9 +107,12 @@ const STUDIES: [&str; 2] =
 const STUDY: &str = "\
 # Study files
 
-A study file holds what is too long for the command line of `regrasp compare`, or what is to be kept: `regrasp compare --study mine.toml -o \
-study` makes the study, and the same command goes on with it after an interruption. It is TOML; variants are either every combination of the \
-levels of `[[vary]]`, or listed one by one as `[[variant]]`. `regrasp schema study` prints the same rules as a JSON schema. Options of the \
+A study file holds what is too long for the command line of `regrasp compare`, or what is to be kept: \
+`regrasp compare --study mine.toml -o \
+study` makes the study, and the same command goes on with it after an interruption. It is TOML; variants \
+are either every combination of the \
+levels of `[[vary]]`, or listed one by one as `[[variant]]`. `regrasp schema study` prints the same rules \
+as a JSON schema. Options of the \
 command line win over the file.
 ";
 

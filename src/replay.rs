@@ -6,16 +6,24 @@ use std::path::PathBuf;
 /// Carry out a plan in a physics simulation: does the object arrive?
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-The object is free, under the gravity that the plan's scenario gives (0, 0, -9.81 m/s² in the hand's frame where it gave none), and held by friction alone. Each joint is \
-driven by a motor with a stiffness, a damping and the joint's effort limit; it follows the plan, and what the grasp needs is fed forward: in every state the \
-forces that need the least share of the friction within the efforts. Nothing looks at where the object is. Between two segments the forces pass over to the fingers that hold next.\n\n\
-Reported for each segment: the largest deviation of the object from the plan, the largest slip of a fingertip, where the object is at the segment's end, and what went wrong. The object has \
-arrived if it is within 5 mm and 5° of the plan's end. It counts as dropped where it is 20 mm or 30° off; the replay ends there.\n\n\
-Plans rely on force closure with 0.8 of the object's friction (`friction_margin` under [limits.resolution] in the scenario). Force closure knows no efforts: now and then a grasp of three fingers needs \
-forces that the joints do not have, or that nearly slip. `regrasp plan --use stability-test=equilibrium` plans with the weight and bounded forces.\n\n\
+The object is free, under the gravity that the plan's scenario gives (0, 0, -9.81 m/s² in the hand's frame \
+where it gave none), and held by friction alone. Each joint is \
+driven by a motor with a stiffness, a damping and the joint's effort limit; it follows the plan, and what \
+the grasp needs is fed forward: in every state the \
+forces that need the least share of the friction within the efforts. Nothing looks at where the object is. \
+Between two segments the forces pass over to the fingers that hold next.\n\n\
+Reported for each segment: the largest deviation of the object from the plan, the largest slip of a \
+fingertip, where the object is at the segment's end, and what went wrong. The object has \
+arrived if it is within 5 mm and 5° of the plan's end. It counts as dropped where it is 20 mm or 30° off; \
+the replay ends there.\n\n\
+Plans rely on force closure with 0.8 of the object's friction (`friction_margin` under [limits.resolution] \
+in the scenario). Force closure knows no efforts: now and then a grasp of three fingers needs \
+forces that the joints do not have, or that nearly slip. `regrasp plan --use stability-test=equilibrium` \
+plans with the weight and bounded forces.\n\n\
 The same replay in MuJoCo: `python3 tests/outside/mujoco_replay.py PLAN`.\n\n\
 Exit codes: 0 the object arrives; 2 bad input; 4 it does not.\n\n\
-Examples:\n  regrasp replay plan.json\n  regrasp replay plan.json --slowdown 4 --mass-scale 1.5\n  regrasp replay plan.json -o replay.json")]
+Examples:\n  regrasp replay plan.json\n  regrasp replay plan.json --slowdown 4 --mass-scale 1.5\n  regrasp \
+replay plan.json -o replay.json")]
 pub struct ReplayArgs {
     /// A plan file.
     pub plan: PathBuf,
@@ -75,7 +83,8 @@ fn vector(text: &str) -> Result<[f64; 3], String> {
 #[cfg(not(feature = "rapier"))]
 pub fn run(_: &ReplayArgs) -> Result<(), crate::Failure> {
     Err(crate::Failure::bad_input(
-        "this program was built without simulation; build it with the feature `rapier`, which is on by default",
+        "this program was built without simulation; build it with the feature `rapier`, which is on by \
+         default",
     ))
 }
 

@@ -188,7 +188,8 @@ impl Summary<'_> {
         match names.as_slice() {
             [] => String::new(),
             names => format!(
-                "  what fails comes from {}; the same command with `--audit` names the call and the law it breaks\n",
+                "  what fails comes from {}; the same command with `--audit` names the call and the law it \
+                 breaks\n",
                 names.join(" and ")
             ),
         }

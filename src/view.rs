@@ -16,9 +16,11 @@ use std::path::{Path, PathBuf};
 /// Write a page that plays a plan in a browser.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-The page is one file that needs no network: hand, object and obstacles in 3-D, contacts, friction cones and rolled traces, every segment, closure \
+The page is one file that needs no network: hand, object and obstacles in 3-D, contacts, friction cones and \
+rolled traces, every segment, closure \
 margin and clearance over time, and what the verifier says. Press ? in it for its keys.\n\n\
-Examples:\n  regrasp view plan.json\n  regrasp replay plan.json -o replay.json; regrasp view plan.json --replay replay.json -o motion.html")]
+Examples:\n  regrasp view plan.json\n  regrasp replay plan.json -o replay.json; regrasp view plan.json \
+--replay replay.json -o motion.html")]
 pub struct ViewArgs {
     /// A plan file.
     pub plan: PathBuf,

@@ -97,7 +97,8 @@ pub fn offset(example: &Example<'_>) -> Result<String, Box<dyn Error>> {
         [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| px(&Vec3::new(x, y, 0.0)));
     writeln!(
         text,
-        "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"#f4e8c8\" stroke=\"#c9b37a\"/>",
+        "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"#f4e8c8\" \
+         stroke=\"#c9b37a\"/>",
         corners[3].0,
         corners[3].1,
         corners[2].0 - corners[3].0,
@@ -113,7 +114,8 @@ pub fn offset(example: &Example<'_>) -> Result<String, Box<dyn Error>> {
         let (x, y) = px(&contact.tip_center(radius));
         writeln!(
             text,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{:.1}\" fill=\"#26374d\" fill-opacity=\"0.25\" stroke=\"#26374d\"/>",
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{:.1}\" fill=\"#26374d\" fill-opacity=\"0.25\" \
+             stroke=\"#26374d\"/>",
             5e3 * radius
         )?;
     }

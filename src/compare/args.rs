@@ -10,16 +10,23 @@ use std::path::PathBuf;
 /// verified.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-`regrasp scenarios` lists the built-in scenarios, `regrasp plugins` the slots, their plugins and settings.\n\n\
-Each `--vary` names plugins of one slot, or values of one setting; all combinations are compared, and the one of the first names is the \
-baseline. Runs are made in parallel, each on one thread. Ctrl-C, or even a kill, keeps what is finished: the same command goes on from there \
-and makes no run again. A run that fails, panics or takes too long is a row of the study, not its end; so is one that ends its process, the \
+`regrasp scenarios` lists the built-in scenarios, `regrasp plugins` the slots, their plugins and \
+settings.\n\n\
+Each `--vary` names plugins of one slot, or values of one setting; all combinations are compared, and the \
+one of the first names is the \
+baseline. Runs are made in parallel, each on one thread. Ctrl-C, or even a kill, keeps what is finished: \
+the same command goes on from there \
+and makes no run again. A run that fails, panics or takes too long is a row of the study, not its end; so \
+is one that ends its process, the \
 next time the same command is given, or at once with `--isolate`.\n\n\
-DIR gets `runs.csv` (a row a run), `summary.csv` and `summary.md` (figures over the seeds and what may be said of them), `report.html`, \
-`ompl/` (logs for OMPL's tools and Planner Arena), `study.json` (all that is needed to repeat it), `runs.jsonl` (the runs in full) and \
+DIR gets `runs.csv` (a row a run), `summary.csv` and `summary.md` (figures over the seeds and what may be \
+said of them), `report.html`, \
+`ompl/` (logs for OMPL's tools and Planner Arena), `study.json` (all that is needed to repeat it), \
+`runs.jsonl` (the runs in full) and \
 `plans/` (for each scenario the baseline's plan with the first seed).\n\n\
 Examples:\n  regrasp compare sphere cubic --vary stability-test=force-closure,socp --seeds 20 -o study\n  \
-regrasp compare --suite paper --vary graph-strategy.end=0.3,0.5,0.8 --vary sampler=rlg,projection -o alpha\n  \
+regrasp compare --suite paper --vary graph-strategy.end=0.3,0.5,0.8 --vary sampler=rlg,projection -o \
+alpha\n  \
 regrasp compare --suite paper --seeds 100 -o table1      # prints the paper's Table 1 beside ours\n  \
 regrasp compare --study mine.toml -o study               # `regrasp schema study` says what may be in it\n  \
 regrasp compare --suite all --shard 2/8 -o part2         # the second of eight parts\n  \

@@ -11,7 +11,8 @@ use serde_json::{Map, Value};
 pub fn factor(text: &str, registry: &Registry) -> Result<Vec<Change>, Failure> {
     let form = || {
         Failure::bad_input(format!(
-            "`--vary {text}` is not of the form SLOT=ID,ID…, SLOT=ID{{KEY=VALUE}},… or SLOT.KEY=VALUE,VALUE…, such as sampler=rlg,projection"
+            "`--vary {text}` is not of the form SLOT=ID,ID…, SLOT=ID{{KEY=VALUE}},… or \
+             SLOT.KEY=VALUE,VALUE…, such as sampler=rlg,projection"
         ))
     };
     let (path, list) = text.split_once('=').ok_or_else(form)?;

@@ -28,11 +28,14 @@ pub fn page(registry: &Registry) -> Result<String, Failure> {
 const INTRODUCTION: &str = "\
 # Plugins and settings
 
-Each component of the algorithm is a slot that a plugin fills. A scenario chooses a plugin with a table `[plugins.SLOT]`, the command line \
-with `--use SLOT=ID` and `--set SLOT.KEY=VALUE`, which win over the scenario; the role in front of an id can be omitted. `regrasp plugins` \
+Each component of the algorithm is a slot that a plugin fills. A scenario chooses a plugin with a table \
+`[plugins.SLOT]`, the command line \
+with `--use SLOT=ID` and `--set SLOT.KEY=VALUE`, which win over the scenario; the role in front of an id \
+can be omitted. `regrasp plugins` \
 prints the same as this page, for the plugins of loaded libraries too.
 
-Settings that are left out have their defaults; a value outside of its range is refused. Where a default is empty, the meaning says what \
+Settings that are left out have their defaults; a value outside of its range is refused. Where a default is \
+empty, the meaning says what \
 happens without the setting.
 
 The default of each slot, the paper's, comes first.

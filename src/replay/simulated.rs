@@ -94,13 +94,15 @@ impl<'a> Told<'a> {
         let reason = if events.is_empty() { "it drifts".to_owned() } else { events.join(", ") };
         match self.report.failure() {
             Some((at, failure)) => format!(
-                "the object does not arrive: dropped in segment {at}, state {}, at {:.2} s; first off its path in segment {index}: {reason}",
+                "the object does not arrive: dropped in segment {at}, state {}, at {:.2} s; first off its \
+                 path in segment {index}: {reason}",
                 failure.state, failure.time
             ),
             None => {
                 let end = self.report.stages.last().map(off).unwrap_or_default();
                 format!(
-                    "the object does not arrive: in the end {end}; first off its path in segment {index}: {reason}"
+                    "the object does not arrive: in the end {end}; first off its path in segment {index}: \
+                     {reason}"
                 )
             }
         }
@@ -136,7 +138,8 @@ impl<'a> Told<'a> {
             table.row(self.row(index, stage));
         }
         format!(
-            "{}: {word} ({} of {} segments, {:.1} s simulated)\n  largest deviation {:.2} mm, {:.2}°; in the end {}\n{}",
+            "{}: {word} ({} of {} segments, {:.1} s simulated)\n  largest deviation {:.2} mm, {:.2}°; in \
+             the end {}\n{}",
             self.args.plan.display(),
             self.report.stages.len(),
             self.motion.segments.len(),

@@ -14,13 +14,17 @@ const GOOD: &[(&str, &str)] = &[
     ("book/src/SUMMARY.md", "# Summary\n\n- [One](one.md)\n- [Two](deep/two.md)\n"),
     (
         "book/src/one.md",
-        "# One\n\n## First steps\n\n## First steps\n\n[two](deep/two.md#the---option-of-plan-x) [again](#first-steps-1) \
-         [by hand](deep/two.md#by-hand) [by name](deep/two.md#second)\n\n```\n$ regrasp plan ball --seed 7 -o x.json && regrasp verify x.json\n```\n\n\
-         <!-- output of: regrasp verify x && regrasp plan ball -->\n```text\nball: solved\n  planning   5 ms\n  ...\n  plan       2 transfers\n```\n",
+        "# One\n\n## First steps\n\n## First steps\n\n[two](deep/two.md#the---option-of-plan-x) \
+         [again](#first-steps-1) \
+         [by hand](deep/two.md#by-hand) [by name](deep/two.md#second)\n\n```\n$ regrasp plan ball --seed 7 \
+         -o x.json && regrasp verify x.json\n```\n\n\
+         <!-- output of: regrasp verify x && regrasp plan ball -->\n```text\nball: solved\n  planning   5 \
+         ms\n  ...\n  plan       2 transfers\n```\n",
     ),
     (
         "book/src/deep/two.md",
-        "# Two {#second}\n\n## The `--option` of plan (x)\n\n<a id=\"by-hand\"></a>\n\n![ball](../ball.svg)\n\n```rust\n\
+        "# Two {#second}\n\n## The `--option` of plan (x)\n\n<a \
+         id=\"by-hand\"></a>\n\n![ball](../ball.svg)\n\n```rust\n\
          {{#include ../../../code.rs:shown}}\n{{#include ../../../code.rs:1:2}}\n```\n\n\
          ```\n$ regrasp plan ball \\\n      --set a.b=-1 --seed=3 > log   # no --such \
          option\n```\n\n[out](https://example.org/x#y)\n\n\

@@ -28,7 +28,8 @@ fn obj(mesh: &Mesh) -> String {
 /// A scenario that turns the object of `scan.obj` about the vertical.
 fn scenario(surface: &str, angle_deg: f64) -> String {
     format!(
-        "summary = \"a scan\"\n[hand]\nbuiltin = \"four-finger\"\n[object]\nshape = {{ kind = \"mesh\", file = \"scan.obj\" }}\n\
+        "summary = \"a scan\"\n[hand]\nbuiltin = \"four-finger\"\n[object]\nshape = {{ kind = \"mesh\", \
+         file = \"scan.obj\" }}\n\
          friction = 0.8\n{surface}\n[start]\npose = {{ position = [0.0, 0.0, 0.085] }}\n[[goal]]\n\
          pose = {{ position = [0.0, 0.0, 0.085], axis = [0.0, 0.0, 1.0], angle_deg = {angle_deg} }}\n"
     )

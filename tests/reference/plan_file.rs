@@ -63,7 +63,8 @@ const PLANS: [&str; 4] = [
 fn with_a_plate_and_a_workspace() -> String {
     let files = regrasp::run::scenario::SCENARIOS;
     let ball = files.iter().find(|file| file.name == "sphere-free").expect("a built-in scenario");
-    let plate = "[[obstacle]]\nshape = { kind = \"box\", size = [0.2, 0.2, 0.01] }\npose = { position = [0.0, 0.0, 0.049] }\n\n\
+    let plate = "[[obstacle]]\nshape = { kind = \"box\", size = [0.2, 0.2, 0.01] }\npose = { position = \
+        [0.0, 0.0, 0.049] }\n\n\
                  [workspace]\nlower = [-0.02, -0.02, 0.08]\nupper = [0.02, 0.02, 0.1]\n\n[start]";
     assert_eq!(ball.text.matches("[start]").count(), 1);
     ball.text.replace("[start]", plate)

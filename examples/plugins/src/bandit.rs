@@ -75,7 +75,8 @@ pub const ENTRY: Entry = Entry {
     slots: &[Slot::GraphStrategy],
     summary: "explores, extends and connects by what each has achieved so far (UCB1)",
     references: &[
-        "Auer, Cesa-Bianchi, Fischer, Finite-time analysis of the multiarmed bandit problem, Machine Learning 47, 2002",
+        "Auer, Cesa-Bianchi, Fischer, Finite-time analysis of the multiarmed bandit problem, Machine \
+         Learning 47, 2002",
     ],
     schema: NoSettings::schema,
     check: check_settings::<NoSettings>,

@@ -78,7 +78,8 @@ pub const ENTRY: Entry = Entry {
     slots: &[Slot::GraphStrategy],
     summary: "goes on from the node whose pose lies nearest to the goal's",
     references: &[
-        "Hart, Nilsson, Raphael, A formal basis for the heuristic determination of minimum cost paths, IEEE SSC 1968",
+        "Hart, Nilsson, Raphael, A formal basis for the heuristic determination of minimum cost paths, IEEE \
+         SSC 1968",
     ],
     schema: NoSettings::schema,
     check: check_settings::<NoSettings>,

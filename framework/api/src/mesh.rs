@@ -59,7 +59,8 @@ pub enum MeshError {
     },
     /// Edges with one facet only.
     #[error(
-        "the mesh is not closed: {count} edges have one facet only, the first from {from:.5?} to {to:.5?}; fill the holes"
+        "the mesh is not closed: {count} edges have one facet only, the first from {from:.5?} to {to:.5?}; \
+         fill the holes"
     )]
     Open {
         /// How many edges are open.
@@ -71,7 +72,8 @@ pub enum MeshError {
     },
     /// A vertex lies on an open edge.
     #[error(
-        "the mesh is not closed: the vertex at {vertex:.5?} lies on the edge from {from:.5?} to {to:.5?} and splits it on one side only (a T-junction); split the facet on the other side there, too"
+        "the mesh is not closed: the vertex at {vertex:.5?} lies on the edge from {from:.5?} to {to:.5?} \
+         and splits it on one side only (a T-junction); split the facet on the other side there, too"
     )]
     TJunction {
         /// The vertex (m).
@@ -83,7 +85,8 @@ pub enum MeshError {
     },
     /// Two vertices that nearly meet.
     #[error(
-        "the mesh is not closed: the vertices at {a:.6?} and {b:.6?} are {apart:.1e} m apart and not one; merge vertices that are so near"
+        "the mesh is not closed: the vertices at {a:.6?} and {b:.6?} are {apart:.1e} m apart and not one; \
+         merge vertices that are so near"
     )]
     Seam {
         /// One vertex (m).
@@ -95,7 +98,8 @@ pub enum MeshError {
     },
     /// Two facets with the same corners.
     #[error(
-        "facets {first} and {second} have the same corners, near {at:.5?}; remove one of them, or both if they form a wall without thickness"
+        "facets {first} and {second} have the same corners, near {at:.5?}; remove one of them, or both if \
+         they form a wall without thickness"
     )]
     Duplicated {
         /// One facet, counted from 0.
@@ -107,7 +111,8 @@ pub enum MeshError {
     },
     /// An edge with more than two facets, or two facets of opposite orientation.
     #[error(
-        "the edge from {from:.5?} to {to:.5?} belongs to more than two facets or to facets of opposite orientation; orient and repair the mesh"
+        "the edge from {from:.5?} to {to:.5?} belongs to more than two facets or to facets of opposite \
+         orientation; orient and repair the mesh"
     )]
     NotManifold {
         /// Start of the edge (m).
@@ -117,7 +122,8 @@ pub enum MeshError {
     },
     /// The normals point inward.
     #[error(
-        "the mesh is inside out (volume {volume:.3e} m³); set `flip = true` or reverse the order of each facet's vertices"
+        "the mesh is inside out (volume {volume:.3e} m³); set `flip = true` or reverse the order of each \
+         facet's vertices"
     )]
     InsideOut {
         /// The signed volume (m³).

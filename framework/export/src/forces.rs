@@ -83,7 +83,8 @@ impl Forces {
             (Some(missing), _) => vec![missing.clone()],
             (None, 0) => Vec::new(),
             (None, outside) => vec![format!(
-                "in {outside} of {} states no forces within the friction cones and the joints' efforts hold the object's weight; \
+                "in {outside} of {} states no forces within the friction cones and the joints' efforts hold \
+                 the object's weight; \
                  `force_margin` is not positive there, and the forces are the nearest",
                 self.held.len()
             )],

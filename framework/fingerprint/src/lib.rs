@@ -115,10 +115,13 @@ mod tests {
     #[test]
     fn comments_docs_layout_and_tests_change_nothing() {
         let same = [
-            "//! A crate.\n/// A point.\npub struct A { /** m */ pub x: f64 }\npub fn f(a: &A) -> f64 { a.x } // x",
+            "//! A crate.\n/// A point.\npub struct A { /** m */ pub x: f64 }\npub fn f(a: &A) -> f64 { a.x \
+             } // x",
             "pub struct A {\n    pub x: f64\n}\n\npub fn f(a: &A) -> f64 {\n    a.x\n}",
-            "pub struct A { pub x: f64 }\npub fn f(a: &A) -> f64 { a.x }\n#[cfg(test)]\nmod tests { fn g() {} }",
-            "#[cfg(test)]\n#[allow(unused)]\nmod tests;\npub struct A { pub x: f64 }\npub fn f(a: &A) -> f64 { a.x }",
+            "pub struct A { pub x: f64 }\npub fn f(a: &A) -> f64 { a.x }\n#[cfg(test)]\nmod tests { fn g() \
+             {} }",
+            "#[cfg(test)]\n#[allow(unused)]\nmod tests;\npub struct A { pub x: f64 }\npub fn f(a: &A) -> \
+             f64 { a.x }",
         ];
         same.iter().for_each(|text| assert_eq!(hash(text), hash(BASE), "{text}"));
     }

@@ -84,7 +84,8 @@ pub enum HostError {
     Call(#[from] CallError),
     /// The hand has too few fingers for the contact model.
     #[error(
-        "the hand has {fingers} fingers, but under `{contact_model}` a grasp needs {fewest} contacts to be stable, so that {} fingers are \
+        "the hand has {fingers} fingers, but under `{contact_model}` a grasp needs {fewest} contacts to be \
+         stable, so that {} fingers are \
          needed to let one of them move; use a hand with more fingers or another contact model",
         .fewest + 1
     )]

@@ -63,7 +63,8 @@ impl Try {
         let step =
             if self.step == 1.0 { String::new() } else { format!(", with steps of {} times", self.step) };
         format!(
-            "a plan did not pass the verifier ({}) and was planned again{step}{smooth}{search}: a fault of the planner, \
+            "a plan did not pass the verifier ({}) and was planned again{step}{smooth}{search}: a fault of \
+             the planner, \
              which its makers like to hear of",
             checks.join(", ")
         )

@@ -49,7 +49,8 @@ pub(crate) fn claims(plan: &Plan, object: &ObjectModel) -> Check {
     if plan.claims.transfer_law != TransferLaw::of_fingertips(fingertip) {
         let law = plan.claims.transfer_law;
         fault(format!(
-            "the plan claims transfers by the law {law:?}, the hand declares fingertips of the kind {fingertip:?}"
+            "the plan claims transfers by the law {law:?}, the hand declares fingertips of the kind \
+             {fingertip:?}"
         ));
     }
     if !known && gauge.worst() == Some(0.0) {

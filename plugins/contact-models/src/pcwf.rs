@@ -28,10 +28,12 @@ regrasp_api::inventory::submit! {
     Entry {
         id: "contact-model/pcwf",
         slots: &[Slot::ContactModel],
-        summary: "Point contact with Coulomb friction: forces inside a round cone, no torque about the normal.",
+        summary: "Point contact with Coulomb friction: forces inside a round cone, no torque about the \
+            normal.",
         references: &[
             "Sahbani, Saut, Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007",
-            "Salisbury, Roth, Kinematic and force analysis of articulated mechanical hands, J. Mechanisms, Transmissions and Automation in Design, 1983",
+            "Salisbury, Roth, Kinematic and force analysis of articulated mechanical hands, J. Mechanisms, \
+             Transmissions and Automation in Design, 1983",
         ],
         schema: NoSettings::schema,
         check: check_settings::<NoSettings>,

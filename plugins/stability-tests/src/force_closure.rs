@@ -218,13 +218,15 @@ regrasp_api::inventory::submit! {
     Entry {
         id: ID,
         slots: &[Slot::StabilityTest],
-        summary: "Exact force closure with round cones, by Newton's method on the polar body; margin Q1 and a certificate.",
+        summary: "Exact force closure with round cones, by Newton's method on the polar body; margin Q1 and \
+            a certificate.",
         references: &[
             "Ferrari, Canny, Planning optimal grasps, ICRA 1992",
             "Nguyen, Constructing force-closure grasps, IJRR 1988",
             "Han, Trinkle, Li, Grasp analysis as linear matrix inequality problems, T-RA 2000",
             "Boyd, Wegbreit, Fast computation of optimal contact forces, T-RO 2007",
-            "Zheng, Chew, Distance between a point and a convex cone in n-dimensional space: computation and applications, T-RO 2009",
+            "Zheng, Chew, Distance between a point and a convex cone in n-dimensional space: computation \
+             and applications, T-RO 2009",
         ],
         schema: ForceClosureSettings::schema,
         check: check_settings::<ForceClosureSettings>,

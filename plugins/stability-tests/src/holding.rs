@@ -211,7 +211,8 @@ regrasp_api::inventory::submit! {
     Entry {
         id: ID,
         slots: &[Slot::StabilityTest],
-        summary: "Forces within the joints' efforts hold the object's weight and disturbances at a share of the friction: what `[hold]` asks for.",
+        summary: "Forces within the joints' efforts hold the object's weight and disturbances at a share of \
+            the friction: what `[hold]` asks for.",
         references: &[
             "Han, Trinkle, Li, Grasp analysis as linear matrix inequality problems, T-RA 2000",
             "Boyd, Wegbreit, Fast computation of optimal contact forces, T-RO 2007",

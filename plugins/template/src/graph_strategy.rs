@@ -72,7 +72,8 @@ pub const ENTRY: Entry = Entry {
     slots: &[Slot::GraphStrategy],
     summary: "explores and connects at a fixed rate",
     references: &[
-        "Kavraki, Svestka, Latombe, Overmars, Probabilistic roadmaps for path planning in high-dimensional configuration spaces, T-RA 1996",
+        "Kavraki, Svestka, Latombe, Overmars, Probabilistic roadmaps for path planning in high-dimensional \
+         configuration spaces, T-RA 1996",
     ],
     schema: AlternateSettings::schema,
     check: check_settings::<AlternateSettings>,

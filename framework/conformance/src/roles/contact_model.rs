@@ -37,7 +37,8 @@ pub(crate) const LAWS: &[Law] = &[
     },
     Law {
         name: "tangent-frames",
-        why: "tangents are a convention: a cone that follows them turns on the object where they change branch",
+        why: "tangents are a convention: a cone that follows them turns on the object where they change \
+            branch",
         check: tangent_frames,
     },
     Law {
@@ -195,7 +196,8 @@ fn tangent_frames(subject: &Subject<'_>) -> Finding {
             ensure((reaches[0] - reaches[1]).abs() <= 0.05, || {
                 let [x, y] = reaches;
                 format!(
-                    "the reach along one direction in O jumps from {x:.3} to {y:.3} where the tangents change branch"
+                    "the reach along one direction in O jumps from {x:.3} to {y:.3} where the tangents \
+                     change branch"
                 )
             })?;
         }

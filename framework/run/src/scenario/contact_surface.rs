@@ -51,7 +51,8 @@ fn made(mesh: &Mesh, radius: f64, wish: ContactSurface) -> Option<Twin> {
 fn remark(object: &ObjectModel, wish: ContactSurface) -> Option<String> {
     match (&object.twin, wish) {
         (Some(twin), _) => Some(format!(
-            "contacts live on a twin of the mesh ({} of {} facets); a fingertip that touches it is within {:.2} mm of \
+            "contacts live on a twin of the mesh ({} of {} facets); a fingertip that touches it is within \
+             {:.2} mm of \
              touching the mesh (`object.contact_surface`)",
             twin.mesh.facets().len(),
             object.mesh.facets().len(),

@@ -84,7 +84,8 @@ pub enum StudyError {
         reason: String,
     },
     /// Another process works on the same study.
-    #[error("`{}` is being worked on by another process; wait for it, or give another folder", folder.display())]
+    #[error("`{}` is being worked on by another process; wait for it, or give another \
+        folder", folder.display())]
     Busy {
         /// The folder.
         folder: PathBuf,

@@ -12,7 +12,8 @@ use thiserror::Error;
 pub enum BodyFault {
     /// A body's facets look inward.
     #[error(
-        "body {body} of {count} ({facets} facets, near {at:.4?}) is inside out: it lies in no other body, and its facets look inward; reverse \
+        "body {body} of {count} ({facets} facets, near {at:.4?}) is inside out: it lies in no other body, \
+         and its facets look inward; reverse \
          the order of their vertices"
     )]
     InsideOut {
@@ -27,7 +28,8 @@ pub enum BodyFault {
     },
     /// Two bodies share space, and their surfaces cross.
     #[error(
-        "bodies {first} and {second} of {count} overlap near {at:.4?}, and their union could not be made; unite them in the program that made \
+        "bodies {first} and {second} of {count} overlap near {at:.4?}, and their union could not be made; \
+         unite them in the program that made \
          them (Boolean union)"
     )]
     Overlap {
@@ -58,7 +60,8 @@ pub enum BodyFault {
     },
     /// Bodies that do not touch.
     #[error(
-        "the mesh holds {count} bodies that are not one piece, the second ({facets} facets) near {at:.4?}; a rigid object is one piece: keep one, \
+        "the mesh holds {count} bodies that are not one piece, the second ({facets} facets) near {at:.4?}; \
+         a rigid object is one piece: keep one, \
          unite them, or say `object.assembly = true` if they are fixed to each other"
     )]
     Apart {

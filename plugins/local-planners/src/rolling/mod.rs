@@ -192,12 +192,16 @@ regrasp_api::inventory::submit! {
     Entry {
         id: ID,
         slots: &[SLOT],
-        summary: "the object moves straight, fingertips roll without slip (midpoint rule on the velocity constraint)",
+        summary: "the object moves straight, fingertips roll without slip (midpoint rule on the velocity \
+            constraint)",
         references: &[
-            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation planning, SSD 2007",
-            "A. Cole, J. Hauser, S. Sastry, Kinematics and control of multifingered hands with rolling contact, IEEE T-AC 1989",
+            "A. Sahbani, J.-P. Saut, V. Perdereau, An efficient algorithm for dexterous manipulation \
+             planning, SSD 2007",
+            "A. Cole, J. Hauser, S. Sastry, Kinematics and control of multifingered hands with rolling \
+             contact, IEEE T-AC 1989",
             "D. J. Montana, The kinematics of contact and grasp, IJRR 1988",
-            "B. Kiss, J. Lévine, B. Lantos, On motion planning for robotic manipulation with permanent rolling contacts, IJRR 2002",
+            "B. Kiss, J. Lévine, B. Lantos, On motion planning for robotic manipulation with permanent \
+             rolling contacts, IJRR 2002",
         ],
         schema: RollingSettings::schema,
         check: check_settings::<RollingSettings>,

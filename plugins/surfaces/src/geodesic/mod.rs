@@ -40,9 +40,11 @@ inventory::submit! {
         summary: "Exact shortest paths on the object's facets, followed by the fingertip",
         references: &[
             "Mitchell, Mount & Papadimitriou, The discrete geodesic problem, SIAM J. Comput. 16, 1987",
-            "Xin & Wang, Improving Chen and Han's algorithm on the discrete geodesic problem, ACM TOG 28, 2009",
+            "Xin & Wang, Improving Chen and Han's algorithm on the discrete geodesic problem, ACM TOG 28, \
+             2009",
             "Polthier & Schmies, Straightest geodesics on polyhedral surfaces, 1998",
-            "Bærentzen & Aanæs, Signed distance computation using the angle weighted pseudonormal, IEEE TVCG 11, 2005",
+            "Bærentzen & Aanæs, Signed distance computation using the angle weighted pseudonormal, IEEE \
+             TVCG 11, 2005",
         ],
         schema: GeodesicSettings::schema,
         check: check_settings::<GeodesicSettings>,

@@ -59,9 +59,12 @@ inventory::submit! {
         slots: &[Slot::Surface],
         summary: "Paths down the distances of the heat method, straightened",
         references: &[
-            "Crane, Weischedel & Wardetzky, Geodesics in heat: a new approach to computing distance based on heat flow, ACM TOG 32, 2013",
-            "Bobenko & Springborn, A discrete Laplace-Beltrami operator for simplicial surfaces, Discrete Comput. Geom. 38, 2007",
-            "Xin & Wang, Efficiently determining a locally exact shortest path on polyhedral surfaces, Computer-Aided Design 39, 2007",
+            "Crane, Weischedel & Wardetzky, Geodesics in heat: a new approach to computing distance based \
+             on heat flow, ACM TOG 32, 2013",
+            "Bobenko & Springborn, A discrete Laplace-Beltrami operator for simplicial surfaces, Discrete \
+             Comput. Geom. 38, 2007",
+            "Xin & Wang, Efficiently determining a locally exact shortest path on polyhedral surfaces, \
+             Computer-Aided Design 39, 2007",
         ],
         schema: HeatSettings::schema,
         check: check_settings::<HeatSettings>,

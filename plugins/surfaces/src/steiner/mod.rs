@@ -48,8 +48,10 @@ inventory::submit! {
         slots: &[Slot::Surface],
         summary: "Shortest paths over points on the edges, straightened (as the paper cites)",
         references: &[
-            "Lanthier, Maheshwari & Sack, Approximating weighted shortest paths on polyhedral surfaces, SoCG 1997",
-            "Xin & Wang, Efficiently determining a locally exact shortest path on polyhedral surfaces, Computer-Aided Design 39, 2007",
+            "Lanthier, Maheshwari & Sack, Approximating weighted shortest paths on polyhedral surfaces, \
+             SoCG 1997",
+            "Xin & Wang, Efficiently determining a locally exact shortest path on polyhedral surfaces, \
+             Computer-Aided Design 39, 2007",
         ],
         schema: SteinerSettings::schema,
         check: check_settings::<SteinerSettings>,
@@ -126,7 +128,8 @@ impl Steiner {
         let points: f64 = rolling.polyhedron.half_edges.iter().map(|edge| count(edge.length) / 2.0).sum();
         if points > MOST_POINTS {
             return Err(BuildError::Unsupported(format!(
-                "`surface/steiner`: {points:.0} points on this object's edges are too many ({MOST_POINTS:.0}): \
+                "`surface/steiner`: {points:.0} points on this object's edges are too many \
+                 ({MOST_POINTS:.0}): \
                  choose a larger `spacing` or fewer points an edge, or use `surface/geodesic`"
             )));
         }

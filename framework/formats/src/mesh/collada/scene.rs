@@ -91,7 +91,8 @@ impl<'a> Reader<'_, 'a> {
         self.instances += 1;
         if self.instances > MOST_INSTANCES || self.all.0.len() + vertices.len() > MOST_VERTICES {
             return Err(format!(
-                "the scene instances geometries more than {MOST_INSTANCES} times, or gathers more than {MOST_VERTICES} vertices; \
+                "the scene instances geometries more than {MOST_INSTANCES} times, or gathers more than \
+                 {MOST_VERTICES} vertices; \
                  simplify it"
             ));
         }
