@@ -43,8 +43,7 @@ macro_rules! with_slots {
             [GraspPlanner grasp LocalPlanner]
                 (LocalPlanner, "local-planner.grasp", "local-planner/linear", "Connects inside GS_n.")
             [TransferPlanner transfer LocalPlanner]
-                (LocalPlanner, "local-planner.transfer", "local-planner/rolling", "Moves the object by \
-            rolling.")
+                (LocalPlanner, "local-planner.transfer", "local-planner/rolling", "Rolls the object.")
             [RegraspPlanner regrasp LocalPlanner]
                 (LocalPlanner, "local-planner.regrasp", "local-planner/rrt", "Moves one finger.")
             [GraphStrategy strategy GraphStrategy]
