@@ -32,8 +32,10 @@ pub enum Command {
     Object(crate::object::ObjectArgs),
     Plugins(PluginsArgs),
     Scenarios(ScenariosArgs),
+    New(crate::new::NewArgs),
     Schema(SchemaArgs),
     NewPlugin(NewPluginArgs),
+    Doctor(crate::doctor::DoctorArgs),
     Completions(crate::completions::CompletionsArgs),
     Man(crate::man::ManArgs),
     Reference(crate::reference::ReferenceArgs),
@@ -50,6 +52,7 @@ impl Command {
             Self::Hand(args) => args.json,
             Self::Plugins(args) => args.json,
             Self::Scenarios(args) => args.json,
+            Self::Doctor(args) => args.json,
             _ => false,
         }
     }

@@ -6,12 +6,14 @@
 mod args;
 mod compare;
 mod completions;
+mod doctor;
 mod export;
 mod failure;
 mod grasps;
 mod hand;
 mod holds;
 mod man;
+mod new;
 mod new_plugin;
 mod numbers;
 mod object;
@@ -21,6 +23,7 @@ mod plan;
 mod plugins;
 mod progress;
 mod property;
+mod quantity;
 mod reference;
 mod replay;
 mod report;
@@ -56,7 +59,9 @@ fn main() -> ExitCode {
         Command::Plugins(args) => plugins::run(args),
         Command::Scenarios(args) => scenarios::run(args),
         Command::Schema(args) => schema::run(args),
+        Command::New(args) => new::run(args),
         Command::NewPlugin(args) => new_plugin::run(args),
+        Command::Doctor(args) => doctor::run(args),
         Command::Completions(args) => completions::run(args),
         Command::Man(args) => man::run(args),
         Command::Reference(args) => reference::run(args),

@@ -79,7 +79,7 @@ impl Kind {
 pub const HAND_MARK: &str = "# A hand file, written by `regrasp hand`.";
 
 /// The first line of the scenarios that are written.
-pub const SCENARIO_MARK: &str = "# A scenario, written by `regrasp hand`.";
+pub const SCENARIO_MARK: &str = "# A scenario, written by Regrasp.";
 
 /// Refuses outputs that would destroy something; nothing is written or computed yet.
 pub fn check(inputs: &[PathBuf], outputs: &[(&Path, Kind)], force: OverwriteArgs) -> Result<(), Failure> {

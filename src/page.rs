@@ -24,6 +24,7 @@ fn check_row(check: &Check, problem: &Problem) -> CheckRow {
         ok: check.ok,
         worst: check.worst,
         limit: check.limit,
+        sign: check.side.sign().into(),
         unit: check.unit.into(),
         place: place_text(&check.place, problem),
         time: check.place.time,
@@ -65,7 +66,7 @@ pub fn graph(record: &GraphRecord, hand: &dyn Hand) -> GraphPicture {
 fn end_name(end: End) -> String {
     match end {
         End::Start => "start".into(),
-        End::Goal(index) => format!("goal {index}"),
+        End::Goal(index) => format!("goal {}", index + 1),
     }
 }
 
@@ -91,7 +92,8 @@ fn graph_edge(edge: &EdgeRecord) -> GraphEdge {
 pub fn place_text(place: &Place, problem: &Problem) -> String {
     let part = |name: &str, index: Option<usize>| index.map(|index| format!("{name} {index}"));
     let parts = [
-        part("goal", place.goal),
+        // Goals are counted from 1 wherever a person reads of them.
+        part("goal", place.goal.map(|goal| goal + 1)),
         part("segment", place.segment),
         part("state", place.state),
         place.time.map(|time| format!("{time:.2} s")),

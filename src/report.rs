@@ -1,8 +1,9 @@
 //! What `plan` says about a run.
 
 use crate::holds::holds_lines;
+use crate::quantity::{digits, span};
 use crate::table::Table;
-use crate::verify::{check_table, number};
+use crate::verify::check_table;
 use regrasp::api::{Reason, Slot, Tally};
 use regrasp::host::Choices;
 use regrasp::page::place_text;
@@ -99,11 +100,12 @@ impl Summary<'_> {
 
     fn times(&self) -> String {
         let phases = self.run.outcome.statistics.time_s.iter();
-        let phases: Vec<String> = phases.map(|(phase, s)| format!("{phase} {:.1}", s * 1e3)).collect();
-        let planning =
-            format!("  planning      {:.1} ms ({})\n", self.run.planning_s * 1e3, phases.join(", "));
+        // The parts in the unit of the whole.
+        let scale = if self.run.planning_s < 0.9995 { 1e3 } else { 1.0 };
+        let phases: Vec<String> = phases.map(|(phase, s)| format!("{phase} {:.1}", s * scale)).collect();
+        let planning = format!("  planning      {} ({})\n", span(self.run.planning_s), phases.join(", "));
         match self.run.verdict {
-            Some(_) => format!("{planning}  verification  {:.1} ms\n", self.run.verification_s * 1e3),
+            Some(_) => format!("{planning}  verification  {}\n", span(self.run.verification_s)),
             None => planning,
         }
     }
@@ -249,7 +251,7 @@ pub fn notes(tally: &Tally) -> String {
     let mut table = Table::new("<<>", &["noted by", "name", "times", "mean", "least", "most"]);
     for note in tally.notes() {
         let figure = note.figure;
-        let numbers = [figure.mean, figure.least, figure.most].map(number);
+        let numbers = [figure.mean, figure.least, figure.most].map(digits);
         let cells = [note.slot.name().to_owned(), note.name.to_owned(), figure.count.to_string()];
         table.row(cells.into_iter().chain(numbers));
     }

@@ -2,6 +2,7 @@
 
 use crate::args::VerifyArgs;
 use crate::holds::holds_lines;
+use crate::quantity::quantity;
 use crate::table::Table;
 use crate::{Failure, say, say_json};
 use regrasp::api::Problem;
@@ -32,33 +33,21 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
 
 /// Checks as a table, one a line.
 pub fn check_table<'a>(checks: impl Iterator<Item = &'a Check>, problem: &Problem) -> String {
-    let mut table = Table::new("<<>><", &["check", "", "worst", "limit", "unit", "where"]);
+    let mut table = Table::new("<<>><<", &["check", "", "worst", "", "limit", "where"]);
     for check in checks {
         let verdict = if check.ok { "ok" } else { "FAILED" };
-        let worst = check.worst.map_or("-".to_owned(), number);
+        let worst = check.worst.map_or("-".to_owned(), |worst| quantity(worst, check.unit));
+        let limit = quantity(check.limit, check.unit);
         let place = place_text(&check.place, problem);
-        table.row([check.name, verdict, &worst, &number(check.limit), check.unit, &place].map(str::to_owned));
+        table.row([check.name, verdict, &worst, check.side.sign(), &limit, &place].map(str::to_owned));
     }
     table.text()
-}
-
-pub fn number(x: f64) -> String {
-    let size = x.abs();
-    if x == 0.0 || (1e-3..1e5).contains(&size) { format!("{x:.4}") } else { format!("{x:.2e}") }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use regrasp::plan::Place;
-
-    #[test]
-    fn numbers_are_short_at_any_size() {
-        assert_eq!(
-            ["0.0000", "12.5000", "2.00e-5"],
-            [number(0.0), number(12.5), number(2e-5)].each_ref().map(|s| s.as_str())
-        );
-    }
 
     #[test]
     fn places_name_only_what_applies() {

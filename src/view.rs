@@ -1,6 +1,6 @@
 //! `regrasp view`, and the page that `regrasp plan --view` opens.
 
-mod open;
+pub mod open;
 mod replay;
 
 use crate::args::PlanArgs;

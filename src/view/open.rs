@@ -26,7 +26,7 @@ pub fn in_browser(page: &Path) -> bool {
 }
 
 /// The system's program that opens files; `None` where nobody could see a window.
-fn opener() -> Option<Command> {
+pub fn opener() -> Option<Command> {
     if cfg!(target_os = "macos") {
         return Some(Command::new("open"));
     }

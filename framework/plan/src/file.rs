@@ -36,7 +36,7 @@ pub fn from_json(bytes: &[u8], path: &Path) -> Result<Plan, ReadError> {
     if bytes.trim_ascii_start().starts_with(b"[") {
         return Err(ReadError::Format { path: path.to_owned(), found: "missing".into() });
     }
-    let header: Header = serde_json::from_slice(bytes).map_err(|error| header_error(&error, path))?;
+    let header: Header = serde_json::from_slice(bytes).map_err(|error| header_error(&error, bytes, path))?;
     let found = |value: Option<Value>| value.map_or("missing".into(), |value| short(&value));
     if header.format.as_ref().and_then(Value::as_str) != Some("regrasp-plan") {
         return Err(ReadError::Format { path: path.to_owned(), found: found(header.format) });
@@ -50,13 +50,21 @@ pub fn from_json(bytes: &[u8], path: &Path) -> Result<Plan, ReadError> {
         .map_err(|error| ReadError::Content { path: path.to_owned(), message: error.to_string() })
 }
 
-fn header_error(error: &serde_json::Error, path: &Path) -> ReadError {
+fn header_error(error: &serde_json::Error, bytes: &[u8], path: &Path) -> ReadError {
     let path = path.to_owned();
     match error.classify() {
         Category::Eof => ReadError::Truncated { path, line: error.line() },
+        Category::Syntax if at_the_end(error, bytes) => ReadError::Truncated { path, line: error.line() },
         Category::Data => ReadError::Format { path, found: "missing".into() },
         _ => ReadError::Syntax { path, message: error.to_string() },
     }
+}
+
+/// Whether the last character is to blame: a number that is cut at its point or exponent is bad syntax to serde.
+fn at_the_end(error: &serde_json::Error, bytes: &[u8]) -> bool {
+    let lines = bytes.split(|&byte| byte == b'\n');
+    let (count, last) = lines.fold((0, 0), |(count, _), line| (count + 1, line.len()));
+    count > 1 && error.line() == count && error.column() + 1 >= last
 }
 
 /// At most 40 characters of a value, for a message.

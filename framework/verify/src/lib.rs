@@ -28,5 +28,5 @@ mod verdict;
 mod walk;
 
 pub use series::{SeriesError, StateFigures, series};
-pub use verdict::{Check, Verdict};
+pub use verdict::{Check, Side, Verdict};
 pub use walk::verify;

@@ -49,6 +49,8 @@ pub struct Check {
     pub worst: Option<f64>,
     /// The value that `worst` may not pass.
     pub limit: f64,
+    /// On which side of the limit a value is good.
+    pub side: Side,
     /// The unit of both: `m`, `rad`, `s`, `of the limit`, `faults`, `force` (fraction of the total normal
     /// force; of the largest allowed one where the plan claims equilibrium).
     pub unit: &'static str,
@@ -60,12 +62,23 @@ pub struct Check {
 }
 
 /// On which side of its limit a value is good.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Side {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
     /// value ≤ limit.
     AtMost,
     /// value > limit.
     Above,
+}
+
+impl Side {
+    /// As it is written between a value and its limit.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Self::AtMost => "≤",
+            Self::Above => ">",
+        }
+    }
 }
 
 /// Gathers the worst value of one check.
@@ -146,6 +159,7 @@ impl Gauge {
             name: self.name,
             worst: self.worst,
             limit: self.limit,
+            side: self.side,
             unit: self.unit,
             place: self.place,
             ok,

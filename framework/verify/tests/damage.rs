@@ -19,12 +19,6 @@ fn judged(damage: impl FnOnce(&mut Plan)) -> Verdict {
     verify(&plan)
 }
 
-fn names(verdict: &Verdict) -> Vec<&'static str> {
-    let failed: Vec<_> = verdict.failures().map(|check| check.name).collect();
-    assert_eq!(verdict.valid, failed.is_empty());
-    failed
-}
-
 /// A plan whose motion is made anew by `make`, from the original one.
 fn with_motion(make: impl FnOnce(&ChainHand, &mut Motion)) -> Verdict {
     judged(|plan| {

@@ -62,7 +62,7 @@ function verdict(checks, player) {
                 element("th", { scope: "row", text: check.name }),
                 element("td", { text: check.ok ? "ok" : "FAILED" }),
                 element("td", { text: number(check.worst) }),
-                element("td", { text: `${number(check.limit)} ${check.unit}` }),
+                element("td", { text: `${check.sign} ${number(check.limit)} ${check.unit}` }),
                 element("td", {}, place),
             ),
         );

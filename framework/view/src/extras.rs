@@ -40,6 +40,8 @@ pub struct CheckRow {
     pub worst: Option<f64>,
     /// The value that the worst may not pass.
     pub limit: f64,
+    /// `≤` or `>`: on which side of the limit a value is good.
+    pub sign: String,
     /// The unit of both.
     pub unit: String,
     /// Where the worst value is reached, in words.

@@ -5,6 +5,7 @@
 use nalgebra::Point3;
 use regrasp_api::*;
 use regrasp_plan::*;
+use regrasp_verify::Verdict;
 use regrasp_world::ChainHand;
 use std::collections::BTreeMap;
 
@@ -196,4 +197,11 @@ pub fn plan_of(mut problem: Problem, hand: &ChainHand, motion: &Motion) -> Plan 
         certificate: None,
         segments: records(motion, hand).unwrap(),
     }
+}
+
+/// The names of the checks that fail.
+pub fn names(verdict: &Verdict) -> Vec<&'static str> {
+    let failed: Vec<_> = verdict.failures().map(|check| check.name).collect();
+    assert_eq!(verdict.valid, failed.is_empty());
+    failed
 }
