@@ -77,7 +77,8 @@ impl ObjectChoice {
     pub(super) fn read(answer: &str) -> Result<Self, Failure> {
         let words: Vec<&str> = answer.split_whitespace().collect();
         let Some((kind, keys, size)) = SHAPES.iter().find(|(kind, ..)| words.first() == Some(kind)) else {
-            if extension(answer).is_some() {
+            // What follows the point of a number is no kind of file.
+            if extension(answer).is_some_and(|kind| kind.parse::<u32>().is_err()) {
                 return Ok(Self::Mesh(answer.to_owned()));
             }
             let kinds = SHAPES.iter().map(|(kind, ..)| *kind);
