@@ -83,8 +83,8 @@ def main(words):
         plan = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         sys.exit(f"{path}: {error}")
-    if not isinstance(plan, dict) or (plan.get("format"), plan.get("version")) != ("regrasp-plan", 1):
-        sys.exit(f"{path}: this is no plan file of version 1")
+    if not isinstance(plan, dict) or plan.get("format") != "regrasp-plan" or plan.get("version") not in (1, 2):
+        sys.exit(f"{path}: this is no plan file of version 1 or 2")
     check(plan)
 
     fingers = [finger["name"] for finger in plan["scenario"]["problem"]["hand"]["finger"]]
