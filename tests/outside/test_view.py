@@ -353,7 +353,7 @@ def test_bad_plans_are_refused_with_the_reason(folder, plan, tmp_path):
     damaged["segments"][1]["states"][3]["joints"][0].pop()
     assert "segment 1, state 3" in view(json.dumps(damaged))
     assert "bad.json" in view("{")
-    assert "`-o`" in view(json.dumps(plan), "-o", "bad.json")
+    assert "is an input" in view(json.dumps(plan), "-o", "bad.json")
     assert "none" in view(json.dumps(plan), "-o", "none/page.html")
     (tmp_path / "replay.json").write_text('{"format": "x"}')
     assert "regrasp replay" in view(json.dumps(plan), "--replay", "replay.json")
