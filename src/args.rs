@@ -1,8 +1,9 @@
 //! The command line's form.
 
-use crate::numbers::{seconds, whole};
+use crate::numbers::{extent, objective, seconds, whole};
 use crate::outputs::OverwriteArgs;
 use clap::{Args, Parser, Subcommand};
+use regrasp::run::{Extent, Objective};
 use std::path::PathBuf;
 
 /// Plans how a multi-fingered hand moves an object from a start to goals, by rolling it and by regrasping,
@@ -68,7 +69,8 @@ reaches some of the goals and \
 verifies goes to `plan.partial.json`. A plan that does not verify is never written under the wished name \
 but to `plan.rejected.json`.\n\n\
 Examples:\n  regrasp plan sphere\n  regrasp plan my-problem.toml --seed 7 -o plan.json\n  \
-regrasp plan cubic --use stability-test=socp --set graph-strategy.end=0.8 --rejections")]
+regrasp plan cubic --use stability-test=socp --set graph-strategy.end=0.8 --rejections\n  \
+regrasp plan cubic --improve 20x -o plan.json")]
 pub struct PlanArgs {
     /// A scenario file, or the name of a built-in scenario.
     pub scenario: String,
@@ -96,6 +98,15 @@ pub struct PlanArgs {
     /// Compute with this many threads, 1 to 256; the plan is the same.
     #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16, 1, 256>)]
     pub threads: u16,
+    /// Go on after the first plan, with other seeds, and keep the best plan: for this many seconds, or with an
+    /// `x` for this many searches (`20x`), which gives the same plan whatever the machine.
+    #[arg(long, value_name = "S|Nx", allow_negative_numbers = true, value_parser = extent)]
+    #[arg(conflicts_with_all = ["audit", "audit_save"])]
+    pub improve: Option<Extent>,
+    /// What `--improve` makes less: `regrasps` (the default), `duration`, `holds` (the friction that the grasps
+    /// need), or `travel` of the joints; of two plans that are alike in it the shorter motion is better.
+    #[arg(long, value_name = "WHAT", requires = "improve", value_parser = objective)]
+    pub optimise: Option<Objective>,
     /// Write the plan to this file; `-` is standard output, and the report then goes to standard error.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

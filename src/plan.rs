@@ -8,7 +8,7 @@ use crate::watch::Watch;
 use crate::{Failure, grasps, overrides, plugins, report, say, say_json, view};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
-use regrasp::run::{Run, RunOptions, Setup, scenario};
+use regrasp::run::{Improved, Run, RunOptions, Setup, scenario};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -27,12 +27,15 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     let (seed, threads) = (args.seed, usize::from(args.threads));
     let options = RunOptions { seed, threads, stop: &watch, clock: &watch, progress: &line };
     let ran = if is_audited(args) {
-        audited(args, &setup, &options)
+        audited(args, &setup, &options).map(|ran| (ran, None))
+    } else if let Some(extent) = args.improve {
+        let improved = setup.improve(args.optimise.unwrap_or_default(), extent, &options);
+        improved.map(|Improved { run, course }| (run, Some(course))).map_err(Failure::refused)
     } else {
-        setup.run(&options).map_err(Failure::refused)
+        setup.run(&options).map(|ran| (ran, None)).map_err(Failure::refused)
     };
     line.finish();
-    let ran = ran?;
+    let (ran, course) = ran?;
     let saved = save(args.output.as_deref(), &ran)?;
     if let Some(path) = &args.grasps {
         let count = grasps::save(path, &scenario, &setup, &ran)?;
@@ -42,6 +45,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
         scenario: &scenario,
         choices: setup.choices(),
         run: &ran,
+        course: course.as_ref(),
         options: &options,
         saved: saved.as_deref(),
     };

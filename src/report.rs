@@ -10,7 +10,7 @@ use regrasp::page::place_text;
 use regrasp::plan::{Extreme, Plan, SegmentKind, Statistics};
 use regrasp::planner::Status;
 use regrasp::run::scenario::Scenario;
-use regrasp::run::{Run, RunOptions};
+use regrasp::run::{Course, Run, RunOptions};
 use regrasp::verify::Check;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -21,6 +21,8 @@ pub struct Summary<'a> {
     pub scenario: &'a Scenario,
     pub choices: &'a Choices,
     pub run: &'a Run,
+    /// How the plan was improved, where that was asked for.
+    pub course: Option<&'a Course>,
     pub options: &'a RunOptions<'a>,
     pub saved: Option<&'a Path>,
 }
@@ -51,6 +53,7 @@ impl Summary<'_> {
             "regrasps_before_smoothing": statistics.regrasps_before_smoothing,
             "states": motion.segments.iter().map(|segment| segment.states.len()).sum::<usize>(),
             "duration_s": duration(run),
+            "improve": self.course,
             "certificate": run.plan.as_ref().and_then(|plan| plan.certificate.as_ref()),
             "checks": run.verdict.as_ref().map(|verdict| &verdict.checks),
             "rejections": rejection_counts(statistics),
@@ -82,6 +85,7 @@ impl Summary<'_> {
             ),
         };
         text += &self.times();
+        text += &self.course.map(improvement).unwrap_or_default();
         text += &format!(
             "  graph         {} in {}, {} generated\n",
             counted(statistics.graph_nodes, "node"),
@@ -208,6 +212,28 @@ impl Summary<'_> {
         let warned: String = warned.collect();
         format!("{reason}{}\n{warned}  to try  {advice}\n{rejections}", kept.unwrap_or_default())
     }
+}
+
+/// What an improvement has come to.
+fn improvement(course: &Course) -> String {
+    let (Some(first), Some(best)) = (course.curve.first(), course.curve.last()) else { return String::new() };
+    let searches = match course.searches {
+        1 => "1 further search".to_owned(),
+        count => format!("{count} further searches"),
+    };
+    let figure = |x: f64| if x.fract() == 0.0 { format!("{x:.0}") } else { format!("{x:.3}") };
+    let found = match best.search {
+        0 => "the first plan is the best".to_owned(),
+        _ => format!(
+            "{} {} instead of {} after {:.2} s, by seed {}",
+            course.objective.name(),
+            figure(best.cost),
+            figure(first.cost),
+            best.time_s,
+            best.seed
+        ),
+    };
+    format!("  improved      {searches}: {found}\n")
 }
 
 /// A number with its noun.

@@ -2,6 +2,7 @@
 
 mod again;
 mod bad_input;
+mod better;
 mod command_line;
 mod compare;
 mod desk;

@@ -14,22 +14,18 @@ fn neighbours(poses: &[Pose], place: usize) -> impl Iterator<Item = &Pose> + Clo
 }
 
 impl Run<'_> {
-    /// Start and goals of a leg, and what finds more goals; the start is `at` where an earlier leg ended
-    /// there.
-    pub fn ends_of(
-        &mut self,
-        leg: usize,
-        at: Option<NodeId>,
-    ) -> Result<(NodeId, Vec<NodeId>, Option<Finder>), Halt> {
-        let problem = self.request.problem;
-        let start = match at {
-            Some(node) => node,
-            None => {
-                let (found, _) = self.end(End::Start, problem.start.grasp.as_deref(), false)?;
-                *found.first().ok_or(Halt::Stuck(Stuck::StartGrasp))?
-            }
-        };
-        let grasp = problem.goal[leg].grasp.as_deref();
+    /// The node that a leg begins in: `at` where an earlier leg ended there.
+    pub fn start_of(&mut self, at: Option<NodeId>) -> Result<NodeId, Halt> {
+        if let Some(node) = at {
+            return Ok(node);
+        }
+        let (found, _) = self.end(End::Start, self.request.problem.start.grasp.as_deref(), false)?;
+        found.first().copied().ok_or(Halt::Stuck(Stuck::StartGrasp))
+    }
+
+    /// The goals of a leg, and what finds more of them.
+    pub fn goals_of(&mut self, leg: usize, start: NodeId) -> Result<(Vec<NodeId>, Option<Finder>), Halt> {
+        let grasp = self.request.problem.goal[leg].grasp.as_deref();
         let mut goals = Vec::new();
         if grasp.is_none() {
             goals.extend(self.same_grasp(start, leg)?);
@@ -39,7 +35,7 @@ impl Run<'_> {
         if goals.is_empty() {
             return Err(Halt::Stuck(Stuck::GoalGrasp(leg)));
         }
-        Ok((start, goals, finder))
+        Ok((goals, finder))
     }
 
     /// The contacts of the leg's start at its goal, if the object can be held there by them: the shortest of

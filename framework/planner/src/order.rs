@@ -15,6 +15,15 @@ pub(crate) fn regrasp_all(
     Order::new(from, to).find(work)
 }
 
+/// Whether some order of the fingers may work, as far as stability and the fingers' places tell.
+pub(crate) fn has_order(
+    work: &mut Work<'_>,
+    from: &Configuration,
+    to: &Configuration,
+) -> Result<bool, CallError> {
+    Order::new(from, to).some_order(work, differing(from, to))
+}
+
 /// One finger moves from `q` to its contact and joints of `to`; `None` if it cannot.
 fn regrasp(
     work: &mut Work<'_>,

@@ -12,6 +12,10 @@ use regrasp_api::{CallError, EdgeId, FingerSet, NodeId, Pose, Random, SearchPoli
 use regrasp_plan::{Segment, Statistics};
 use std::collections::BTreeSet;
 
+/// Samples of the graph between the quick relays and the thorough ones. Our choice: most problems that the
+/// graph solves sooner than these need fewer.
+const FIRST_LOOK: usize = 15;
+
 /// Why the legs ended before the last goal.
 pub(crate) enum Halt {
     Stuck(Stuck),
@@ -77,8 +81,13 @@ impl Run<'_> {
         let before = self.graph.node_count();
         loop {
             self.session.seed = seed_of_round(self.request.seed, budget.rounds);
-            budget.begin_round(self.policy.restart_samples);
-            let (start, goals, finder) = self.timed(Phase::Endpoints, |run| run.ends_of(leg, at))?;
+            let first = if self.relays(leg) > 0 { FIRST_LOOK } else { 0 };
+            budget.begin_round(self.policy.restart_samples, first);
+            let start = self.timed(Phase::Endpoints, |run| run.start_of(at))?;
+            if let Some(segments) = self.timed(Phase::Relay, |run| run.relayed(leg, start, budget.rounds))? {
+                return Ok(self.reached(leg, start, segments));
+            }
+            let (goals, finder) = self.timed(Phase::Endpoints, |run| run.goals_of(leg, start))?;
             let ended = self.timed(Phase::Search, |run| run.search((leg, start), goals, finder, budget))?;
             match ended {
                 Ended::Found(segments) => return Ok(self.reached(leg, start, segments)),

@@ -81,10 +81,15 @@ impl Budget {
     /// Begins the next round: its length in units of `unit` samples follows the sequence 1, 1, 2, 1, 1, 2, 4,
     /// … of M. Luby, A. Sinclair, D. Zuckerman, "Optimal speedup of Las Vegas algorithms", IPL 1993: whatever
     /// the distribution of a search's length, no schedule is better by more than a logarithm. `unit` = 0
-    /// means one round without an end.
-    pub fn begin_round(&mut self, unit: usize) {
+    /// means one round without an end. Before the sequence there is a round of `first` samples, unless that
+    /// is 0.
+    pub fn begin_round(&mut self, unit: usize, first: usize) {
         self.rounds += 1;
-        self.round_end = (unit > 0).then(|| self.samples + unit * luby(self.rounds) as usize);
+        let length = match self.rounds - u64::from(first > 0) {
+            0 => first,
+            place => unit * luby(place) as usize,
+        };
+        self.round_end = (unit > 0).then_some(self.samples + length);
     }
 
     fn round_is_over(&self) -> bool {
@@ -269,17 +274,24 @@ mod tests {
     #[test]
     fn a_round_ends_at_its_samples_and_the_budget_ends_the_last() {
         let mut budget = Budget { most: 100, ..Default::default() };
-        budget.begin_round(40);
+        budget.begin_round(40, 0);
         budget.samples = 39;
         assert!(!budget.round_is_over());
         budget.samples = 40;
         assert!(budget.round_is_over());
-        budget.begin_round(40);
-        budget.begin_round(40);
+        budget.begin_round(40, 0);
+        budget.begin_round(40, 0);
         budget.samples = 119;
         assert!(!budget.round_is_over(), "the strategy stops at the budget of all rounds");
-        budget.begin_round(0);
+        budget.begin_round(0, 0);
         budget.samples = 99;
         assert!(!budget.round_is_over());
+        let ends = [15, 55, 95, 175].map(Some);
+        let mut budget = Budget { most: 1000, ..Default::default() };
+        for end in ends {
+            budget.begin_round(40, 15);
+            assert_eq!(budget.round_end, end);
+            budget.samples = end.unwrap_or_default();
+        }
     }
 }

@@ -53,6 +53,8 @@ pub(crate) enum Call {
     Smooth = 9,
     /// The seed of a round of a search, after the first.
     Round = 10,
+    /// A relay from a leg's start to its goal.
+    Relay = 11,
 }
 
 /// The key of a call: what it is for, and two numbers that tell calls of a kind apart.

@@ -6,6 +6,7 @@ mod audit;
 mod cones;
 mod error;
 mod forces;
+mod improve;
 mod plan_file;
 pub mod scenario;
 mod setup;
@@ -14,5 +15,6 @@ mod workbench;
 
 pub use audit::*;
 pub use error::*;
+pub use improve::*;
 pub use setup::*;
 pub use workbench::Workbench;

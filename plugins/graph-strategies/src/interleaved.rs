@@ -35,6 +35,11 @@ pub struct InterleavedSettings {
     /// Whether the start is tried to be joined to each goal by transfers and regrasps before anything else.
     /// The paper builds the graph alone (Algorithm 1).
     pub first_try: bool,
+    /// How often, before even that, a relay is tried: rolls towards the goal, each as far as it goes, and
+    /// between them regrasps of those fingers alone that bar the way. With `first_try` alone; 0 means never.
+    /// The paper has none.
+    #[schemars(range(min = 0, max = 1000))]
+    pub relays: usize,
     /// Whether paths in GS_n from start and goals to each component are tried at once; the paper tries those
     /// of new nodes alone (Algorithm 2).
     pub join_ends: bool,
@@ -60,6 +65,7 @@ impl Default for InterleavedSettings {
             end: 1.0,
             growth: 5.0,
             first_try: true,
+            relays: 4,
             join_ends: true,
             grasp_paths: true,
             drop_unconnected: false,
@@ -133,7 +139,8 @@ impl GraphStrategy for Interleaved {
     }
 
     fn policy(&self) -> SearchPolicy {
-        self.settings.policy
+        let InterleavedSettings { first_try, relays, policy, .. } = self.settings;
+        SearchPolicy { relays: if first_try { relays } else { 0 }, ..policy }
     }
 }
 

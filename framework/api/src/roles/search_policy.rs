@@ -43,6 +43,11 @@ pub struct SearchPolicy {
     pub connection: Connection,
     /// How a path in GS_n becomes transfers and regrasps.
     pub decomposition: Decomposition,
+    /// How often a way from each start to its goal is looked for by a relay, rolls with regrasps of the
+    /// fingers that bar them, before the graph is begun; 0 means never. No setting: a strategy that tries
+    /// start and goal first says so by settings of its own.
+    #[serde(skip)]
+    pub relays: usize,
 }
 
 impl Default for SearchPolicy {
@@ -57,6 +62,7 @@ impl Default for SearchPolicy {
             admission: Admission::Leavable,
             connection: Connection::BothEnds,
             decomposition: Decomposition::Greedy,
+            relays: 0,
         }
     }
 }

@@ -1,0 +1,184 @@
+//! The relay: towards a pose by rolls, each as far as it goes, and between them regrasps of those fingers
+//! alone that bar the way, to where they can follow far.
+//!
+//! A best-first search over rolls. The successors of a roll regrasp some fingers at one of its states and
+//! roll on. What a roll has cost is its regrasps; what it is worth is how far it has come, a regrasp being
+//! worth a turn of [`TURN`]. Contacts are chosen by how far along the route their fingers can follow, beyond
+//! the goal too: what comes next begins with the grasp in which this ends. Rolls are tried before the
+//! regrasps that lead to them: they cost less, and tell more.
+
+mod choice;
+mod follow;
+mod roll;
+mod route;
+
+pub(crate) use route::Route;
+
+use crate::order::{has_order, regrasp_all};
+use crate::segments::moves;
+use crate::session::Work;
+use crate::shortest_path::Length;
+use choice::{Choice, Station};
+use regrasp_api::{CallError, Configuration};
+use regrasp_plan::Segment;
+use roll::Roll;
+
+/// The turn of the object (rad) that a regrasp is worth.
+const TURN: f64 = 0.3;
+/// The parts of a roll after which fingers are regrasped, in turn: at its very end some finger is at its
+/// limit.
+const BACK_OFF: [f64; 4] = [0.85, 1.0, 0.6, 0.35];
+/// Rolls that are tried at a station.
+const ROLLS: usize = 4;
+
+/// How hard a relay tries.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Effort {
+    /// Stations that it may try.
+    pub stations: usize,
+    /// Points of the surface that are looked at for each finger of a station.
+    pub points: usize,
+    /// Touches of a finger that are kept there, the farthest reaching first.
+    pub kept: usize,
+    /// Random choices that are weighed for each number of fingers.
+    pub draws: usize,
+}
+
+/// Enough for most of what can be done; what fails costs little.
+pub(crate) const QUICK: Effort = Effort { stations: 10, points: 100, kept: 8, draws: 10 };
+/// For hands in which little is within reach.
+pub(crate) const THOROUGH: Effort = Effort { stations: 20, points: 300, kept: 20, draws: 40 };
+
+/// A roll, and how it is come by.
+struct Node {
+    /// The node before, and the state of its roll at which fingers are regrasped.
+    before: Option<(usize, usize)>,
+    /// The regrasps, once they are found.
+    regrasps: Option<Vec<Segment>>,
+    /// How many regrasps lead here from the beginning.
+    count: usize,
+    roll: Roll,
+    /// Where it seems to roll to, beyond the target too.
+    reach: f64,
+    /// Stations that were tried on it.
+    tries: usize,
+}
+
+/// The search.
+struct Relay<'r> {
+    route: &'r Route,
+    effort: &'r Effort,
+    nodes: Vec<Node>,
+}
+
+/// Steps from `from`, at the beginning of the route, to its target; `None` if it does not get there.
+pub(crate) fn relay(
+    work: &mut Work<'_>,
+    from: &Configuration,
+    route: &Route,
+    effort: &Effort,
+) -> Result<Option<Vec<Segment>>, CallError> {
+    let roll = Roll::along(work, route, from, 0.0)?;
+    let reach = roll.reached();
+    let root = Node { before: None, regrasps: Some(Vec::new()), count: 0, roll, reach, tries: 0 };
+    let mut relay = Relay { route, effort, nodes: vec![root] };
+    let mut tried = 0;
+    while let Some(best) = relay.best() {
+        work.context.proceed()?;
+        if !relay.is_led_to(work, best)? {
+            relay.nodes[best].tries = BACK_OFF.len();
+        } else if relay.nodes[best].roll.is_complete {
+            return Ok(Some(relay.steps(best)));
+        } else if tried < effort.stations {
+            relay.extend(work, best)?;
+            tried += 1;
+        } else {
+            break;
+        }
+    }
+    Ok(None)
+}
+
+impl Relay<'_> {
+    /// What a motion is worth that has come to a place with so many regrasps: the less the better.
+    fn worth(&self, count: usize, place: f64) -> f64 {
+        count as f64 - place / self.route.of_turn(TURN)
+    }
+
+    /// The node to go on from.
+    fn best(&self) -> Option<usize> {
+        let open = (0..self.nodes.len()).filter(|&node| self.nodes[node].tries < BACK_OFF.len());
+        open.min_by_key(|&node| {
+            let Node { count, roll, tries, reach, .. } = &self.nodes[node];
+            let place = if roll.is_complete { reach.max(roll.reached()) } else { roll.reached() };
+            Length(self.worth(*count, place) + *tries as f64)
+        })
+    }
+
+    /// Whether the regrasps are found that lead to a node.
+    fn is_led_to(&mut self, work: &mut Work<'_>, node: usize) -> Result<bool, CallError> {
+        let this = &self.nodes[node];
+        let (None, Some((before, index))) = (&this.regrasps, this.before) else { return Ok(true) };
+        let found = regrasp_all(work, &self.nodes[before].roll.states[index], &this.roll.states[0])?;
+        let is_found = found.is_some();
+        self.nodes[node].regrasps = found;
+        Ok(is_found)
+    }
+
+    /// Looks for regrasps on the roll of a node after which the object rolls on.
+    fn extend(&mut self, work: &mut Work<'_>, node: usize) -> Result<(), CallError> {
+        let Node { roll, count, tries, .. } = &self.nodes[node];
+        let (so_far, back) = (*count, BACK_OFF[*tries]);
+        let (from, to) = (roll.places[0], roll.reached());
+        let wanted = from + back * (to - from);
+        let index = roll.places.partition_point(|&place| place < wanted).min(roll.places.len() - 1);
+        let (q, place) = (roll.states[index].clone(), roll.places[index]);
+        self.nodes[node].tries += 1;
+        let station = Station::new(work, self.route, (&q, place), self.effort)?;
+        let choices = station.choices(work, |moved, reach| self.worth(moved, reach))?;
+        for (choice, roll) in self.rolled(work, (&q, place), choices)? {
+            let (before, count) = (Some((node, index)), so_far + choice.moved);
+            self.nodes.push(Node { before, regrasps: None, count, roll, reach: choice.reach, tries: 0 });
+        }
+        Ok(())
+    }
+
+    /// The rolls of the first few choices that hold.
+    fn rolled(
+        &self,
+        work: &mut Work<'_>,
+        (q, place): (&Configuration, f64),
+        choices: Vec<Choice>,
+    ) -> Result<Vec<(Choice, Roll)>, CallError> {
+        let (mut rolled, mut tried) = (Vec::new(), 0);
+        for choice in choices {
+            if tried == ROLLS {
+                break;
+            }
+            if !has_order(work, q, &choice.q)? {
+                continue;
+            }
+            tried += 1;
+            let roll = Roll::along(work, self.route, &choice.q, place)?;
+            if roll.reached() > place {
+                rolled.push((choice, roll));
+            }
+        }
+        Ok(rolled)
+    }
+
+    /// The whole way to the end of a node's roll.
+    fn steps(&self, last: usize) -> Vec<Segment> {
+        let (mut at, mut index) = (last, self.nodes[last].roll.states.len() - 1);
+        let mut backwards = Vec::new();
+        loop {
+            let Node { before, regrasps, roll, .. } = &self.nodes[at];
+            backwards.extend(roll.transfers(index).into_iter().rev());
+            backwards.extend(regrasps.iter().flatten().rev().cloned());
+            let Some((earlier, there)) = *before else { break };
+            (at, index) = (earlier, there);
+        }
+        backwards.reverse();
+        backwards.into_iter().filter(moves).collect()
+    }
+}
