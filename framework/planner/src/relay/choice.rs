@@ -1,6 +1,6 @@
 //! Which fingers to regrasp, and where to, so that the object can roll on.
 
-use super::Effort;
+use super::effort::Effort;
 use super::follow::{Looks, Touch, Track};
 use super::route::Route;
 use crate::session::Work;

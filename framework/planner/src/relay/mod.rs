@@ -8,10 +8,12 @@
 //! regrasps that lead to them: they cost less, and tell more.
 
 mod choice;
+mod effort;
 mod follow;
 mod roll;
 mod route;
 
+pub(crate) use effort::{QUICK, THOROUGH};
 pub(crate) use route::Route;
 
 use crate::order::{has_order, regrasp_all};
@@ -19,6 +21,7 @@ use crate::segments::moves;
 use crate::session::Work;
 use crate::shortest_path::Length;
 use choice::{Choice, Station};
+use effort::Effort;
 use regrasp_api::{CallError, Configuration};
 use regrasp_plan::Segment;
 use roll::Roll;
@@ -30,24 +33,6 @@ const TURN: f64 = 0.3;
 const BACK_OFF: [f64; 4] = [0.85, 1.0, 0.6, 0.35];
 /// Rolls that are tried at a station.
 const ROLLS: usize = 4;
-
-/// How hard a relay tries.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Effort {
-    /// Stations that it may try.
-    pub stations: usize,
-    /// Points of the surface that are looked at for each finger of a station.
-    pub points: usize,
-    /// Touches of a finger that are kept there, the farthest reaching first.
-    pub kept: usize,
-    /// Random choices that are weighed for each number of fingers.
-    pub draws: usize,
-}
-
-/// Enough for most of what can be done; what fails costs little.
-pub(crate) const QUICK: Effort = Effort { stations: 10, points: 100, kept: 8, draws: 10 };
-/// For hands in which little is within reach.
-pub(crate) const THOROUGH: Effort = Effort { stations: 20, points: 300, kept: 20, draws: 40 };
 
 /// A roll, and how it is come by.
 struct Node {
