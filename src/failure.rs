@@ -54,6 +54,11 @@ impl Failure {
         Self { refusal: Box::new(self.refusal.told(&message)), message, ..self }
     }
 
+    /// What went wrong, in words.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
     /// The failure as JSON: `{"error": {"code": …, "message": …, "file": …, "line": …, "key": …, …}}`.
     pub fn json(&self) -> Value {
         json!({ "error": self.refusal })

@@ -44,6 +44,7 @@ pub use regrasp_abi as abi;
 pub use regrasp_api as api;
 pub use regrasp_export as export;
 pub use regrasp_formats as formats;
+pub use regrasp_grasps as grasps;
 pub use regrasp_hands as hands;
 pub use regrasp_host as host;
 pub use regrasp_physics as physics;

@@ -53,6 +53,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::run(args),
         Command::View(args) => view::run(args),
         Command::Export(args) => export::run(args),
+        Command::Grasps(args) => grasps::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Hand(args) => hand::run(args),
         Command::Object(args) => object::run(args),

@@ -31,6 +31,8 @@ pub enum Kind {
     Page,
     /// Grasps, as JSON or as NumPy arrays.
     Grasps,
+    /// Grasps that are still being looked for.
+    BegunGrasps,
     /// The result of a replay.
     Replay,
     /// A hand file.
@@ -48,6 +50,7 @@ impl Kind {
             Kind::Plan => "plan file",
             Kind::Page => "page",
             Kind::Grasps => "file of grasps",
+            Kind::BegunGrasps => "begun search for grasps",
             Kind::Replay => "file of a replay",
             Kind::Hand => "hand file",
             Kind::Scenario => "scenario",
@@ -61,7 +64,14 @@ impl Kind {
         match self {
             Kind::Plan => &["\"regrasp-plan\""],
             Kind::Page => &["content=\"regrasp view\""],
-            Kind::Grasps => &["\"regrasp-grasps\"", "component.npy"],
+            Kind::Grasps => &[
+                "\"regrasp-grasps\"",
+                "component.npy",
+                "grasps_info.npy",
+                "{\"grasp\":0,",
+                "<!-- regrasp-grasps -->",
+            ],
+            Kind::BegunGrasps => &["\"regrasp-grasps-part\""],
             Kind::Replay => &["\"regrasp-replay\""],
             Kind::Hand => &[HAND_MARK],
             Kind::Scenario => &[SCENARIO_MARK],

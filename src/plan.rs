@@ -1,11 +1,12 @@
 //! `regrasp plan`
 
 use crate::args::PlanArgs;
+use crate::grasps::kept;
 use crate::outputs::{self, Kind};
 use crate::progress::Line;
 use crate::terminal::printable;
 use crate::watch::Watch;
-use crate::{Failure, grasps, overrides, plugins, report, say, say_json, view};
+use crate::{Failure, overrides, plugins, report, say, say_json, view};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
 use regrasp::run::{Improved, Run, RunOptions, Setup, scenario};
@@ -38,7 +39,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     let (ran, course) = ran?;
     let saved = save(args.output.as_deref(), &ran)?;
     if let Some(path) = &args.grasps {
-        let count = grasps::save(path, &scenario, &setup, &ran)?;
+        let count = kept::save(path, &scenario, &setup, &ran)?;
         remark(&[format!("{count} stable grasps are in {}", path.display())]);
     }
     let summary = report::Summary {
@@ -109,7 +110,7 @@ fn check_outputs(args: &PlanArgs) -> Result<(), Failure> {
             "`-o -` and `--json` both want standard output; name a file with `-o`",
         ));
     }
-    grasps::check(args.grasps.as_deref())?;
+    kept::check(args.grasps.as_deref())?;
     let mut inputs = outputs::files_of(&args.scenario);
     inputs.extend(args.libraries.load.iter().cloned());
     let plan = args.output.as_deref().filter(|_| !standard);

@@ -119,6 +119,11 @@ fn several_goals() {
 }
 
 #[test]
+fn grasps_in_bulk() {
+    assert_says("13_grasps_in_bulk", &["400 grasps after", "      4  "]);
+}
+
+#[test]
 fn examples_are_short_numbered_without_gaps_and_listed() {
     let list = fs::read_to_string(folder().join("README.md")).expect("the examples have a list");
     let own = include_str!("examples.rs");
@@ -131,7 +136,7 @@ fn examples_are_short_numbered_without_gaps_and_listed() {
         let runs = own.contains(&format!("\"{stem}\"")) || name.ends_with(".py");
         assert!(runs, "no test runs {name}");
     }
-    assert_eq!(numbered().len(), 12);
+    assert_eq!(numbered().len(), 13);
 }
 
 #[test]

@@ -27,6 +27,19 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-example-plugins", &["regrasp-api"]),
     ("regrasp-conformance", &["regrasp-api", "regrasp-audit", "regrasp-world"]),
     ("regrasp-export", &["regrasp-api", "regrasp-physics", "regrasp-plan", "regrasp-world"]),
+    (
+        "regrasp-grasps",
+        &[
+            "regrasp-api",
+            "regrasp-export",
+            "regrasp-physics",
+            "regrasp-plan",
+            "regrasp-planner",
+            "regrasp-run",
+            "regrasp-verify",
+            "regrasp-world",
+        ],
+    ),
     ("regrasp-physics", &["regrasp-api", "regrasp-world"]),
     (
         "regrasp-run",

@@ -9,6 +9,7 @@ mod bench;
 mod compare;
 mod conformance;
 mod errors;
+mod grasps;
 mod hand;
 mod pieces;
 mod plan;
@@ -27,6 +28,8 @@ mod _regrasp {
     use super::compare::{digest, merge_studies, run_study};
     #[pymodule_export]
     use super::conformance::{conformance, plugins};
+    #[pymodule_export]
+    use super::grasps::grasps;
     #[pymodule_export]
     use super::hand::Hand;
     #[pymodule_export]

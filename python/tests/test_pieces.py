@@ -98,6 +98,18 @@ def test_sampled_grasps_are_admissible_and_the_seed_decides() -> None:
     assert all([contact is not None for contact in q.contacts] == [True, True, False, True] for q in three)
 
 
+def test_grasps_in_bulk_are_arrays() -> None:
+    found = rg.grasps("sphere", 50, seed=4, graph=True)
+    assert len(found) == 50 and (found.margin > 0).all() and (found.clearance > 0).all()
+    assert not (found.liftable & ~found.holding).any()
+    assert np.allclose(np.linalg.norm(found.contact_point_O[found.holding], axis=-1), 0.03, atol=3e-4)
+    assert (found.pose[found.edges[:, 0]] == found.pose[found.edges[:, 1]]).all()
+    fewer = rg.grasps("sphere", 10, seed=4, graph=True, threads=2)
+    assert np.array_equal(fewer.joints, found.joints[:10])
+    with pytest.raises(rg.ArgumentError, match="`spread`"):
+        rg.grasps("sphere", 5, spread=0.0)
+
+
 @pytest.mark.parametrize(
     ("call", "words"),
     [

@@ -7,6 +7,7 @@ mod command_line;
 mod compare;
 mod desk;
 mod golden;
+mod grasps;
 mod hold;
 mod json_errors;
 mod outputs;

@@ -23,6 +23,8 @@ mod xml;
 
 pub use error::ExportError;
 pub use grasps::{GraspRecord, Grasps};
+pub use names::joint_names;
+pub use npy::npy_header;
 pub use scene::Scene;
 pub use urdf::stl;
 

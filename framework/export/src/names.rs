@@ -47,6 +47,11 @@ impl Names {
     }
 }
 
+/// The names of all joints of a hand in turn, different ones.
+pub fn joint_names(hand: &HandDescription) -> Vec<String> {
+    Names::new(hand, &[]).joints.into_iter().flatten().collect()
+}
+
 /// The link of the palm, whose frame is H.
 pub(crate) const ROOT: &str = "hand";
 

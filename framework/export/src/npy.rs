@@ -115,7 +115,7 @@ impl Archive {
             .compression_method(zip::CompressionMethod::Stored)
             .last_modified_time(zip::DateTime::default());
         self.0.start_file(format!("{name}.npy"), options)?;
-        self.0.write_all(&header(kind, shape))?;
+        self.0.write_all(&npy_header(kind, shape))?;
         self.0.write_all(values)?;
         Ok(())
     }
@@ -125,9 +125,9 @@ impl Archive {
     }
 }
 
-/// Everything before the values: magic number, version 1.0, length, description; padded so that the values
-/// begin at a multiple of 64 bytes.
-fn header(kind: &str, shape: &[usize]) -> Vec<u8> {
+/// Everything before the values of an array of `kind`, NumPy's word for its type: magic number, version 1.0,
+/// length, description; padded so that the values begin at a multiple of 64 bytes.
+pub fn npy_header(kind: &str, shape: &[usize]) -> Vec<u8> {
     let shape: String = shape.iter().map(|length| format!("{length}, ")).collect();
     let text = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}), }}", shape.trim_end());
     let before = 10;
@@ -147,10 +147,10 @@ mod tests {
     #[test]
     fn headers_end_at_multiples_of_64_bytes() {
         for shape in [&[][..], &[7], &[2000, 4, 3]] {
-            let header = header("<f8", shape);
+            let header = npy_header("<f8", shape);
             assert_eq!(header.len() % 64, 0);
             assert_eq!(header.last(), Some(&b'\n'));
         }
-        assert!(String::from_utf8_lossy(&header("<f8", &[7])).contains("'shape': (7,), }"));
+        assert!(String::from_utf8_lossy(&npy_header("<f8", &[7])).contains("'shape': (7,), }"));
     }
 }

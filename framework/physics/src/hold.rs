@@ -7,6 +7,7 @@ use nalgebra::Vector6;
 use regrasp_api::{
     Configuration, EffortBounds, FingerIndex, FingerJoints, FingerSet, Hand, ObjectModel, PerFinger, Vec3,
 };
+use std::slice;
 
 /// How much of the friction that a stage leaves over its forces may rely on, so that efforts stay away from
 /// their limits.
@@ -98,6 +99,16 @@ impl<'a> Holder<'a> {
             Some(self.held(q, grip, &forces))
         })
         .collect()
+    }
+
+    /// How all fingers that touch hold the object at rest: by the analytic centre of the forces that need at
+    /// most `share` of the friction, and where there are none, by those that need least.
+    pub fn one(&self, q: &Configuration, share: f64) -> Option<Held> {
+        let grip = self.grip(q, q.holding(), &self.press);
+        match centre(&grip, share, None) {
+            Some(forces) => Some(self.held(q, &grip, &forces)),
+            None => self.stage(slice::from_ref(q), Configuration::holding).pop().flatten(),
+        }
     }
 
     fn grip(&self, q: &Configuration, holding: FingerSet, press: &Press) -> Grip {

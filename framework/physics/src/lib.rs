@@ -57,6 +57,6 @@ pub use replay::{Moment, ReplayReport, ReplaySettings, StageReport, replay};
 #[cfg(feature = "rapier")]
 pub use report::{Bounds, Failure, Happening, Outcome};
 pub use settings::SimulationSettings;
-pub use stage::{Stage, grasp_forces};
+pub use stage::{Stage, grasp_forces, grasp_forces_at};
 #[cfg(feature = "rapier")]
 pub use transfer::TransferSimulator;

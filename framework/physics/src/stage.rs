@@ -2,6 +2,7 @@
 
 use crate::force::Friction;
 use crate::hold::{Held, Holder};
+use crate::settings::check;
 use crate::{PhysicsError, SimulationSettings};
 use regrasp_api::{Configuration, FingerIndex, FingerSet, Hand, ObjectModel, Vec3};
 
@@ -51,4 +52,23 @@ pub fn grasp_forces(
         holder.stage(stage.states, |q| stage.holding(q))
     };
     Ok(stages.iter().map(one).collect())
+}
+
+/// The forces by which the fingers that touch hold the object in one grasp at rest.
+///
+/// The analytic centre of those that need at most `share` (0.01 to 1) of the friction, within the joints'
+/// efforts; where there are none, those that need least of it; `None` where none of any friction do. The
+/// arguments are those of [`grasp_forces`], which is what to ask along a motion: there forces must be
+/// continuous.
+pub fn grasp_forces_at(
+    (hand, object, g_H): (&dyn Hand, &ObjectModel, Vec3),
+    friction: Friction,
+    q: &Configuration,
+    share: f64,
+    settings: &SimulationSettings,
+) -> Result<Option<Held>, PhysicsError> {
+    settings.validate()?;
+    friction.validate()?;
+    check("share", share, 0.01, 1.0)?;
+    Ok(Holder::new((hand, object, g_H), friction, settings).one(q, share))
 }

@@ -2,13 +2,19 @@
 
 use crate::cones::Cones;
 use crate::{RunError, Setup};
-use regrasp_api::{Criterion, FrictionFactor, HoldLoad, ObjectModel, Problem, Twin, mesh_digest};
+use regrasp_api::{
+    Configuration, Criterion, FrictionFactor, HoldLoad, ObjectModel, PerFinger, Pose, Problem, Random, Twin,
+    mesh_digest,
+};
 use regrasp_plan::{
-    Claims, ContactClaim, ContactSurface, Facets, Format, MarginFrame, ObjectRecord, Plan, PluginChoice,
-    ResolvedScenario, StoppedBy, TransferLaw, VERSION,
+    Claims, ContactClaim, ContactSurface, Facets, Format, MarginFrame, Motion, ObjectRecord, Plan,
+    PluginChoice, ResolvedScenario, Segment, SegmentKind, StoppedBy, TransferLaw, VERSION,
 };
 use regrasp_planner::Outcome;
 use serde_json::Value;
+
+/// Contacts of each finger that are looked at to tell whether all have one cone.
+const PROBES: usize = 64;
 
 impl Setup<'_> {
     /// The plan file of an outcome of this problem, which is the scenario's up to the share of the friction
@@ -41,6 +47,50 @@ impl Setup<'_> {
             certificate: None,
             segments,
         })
+    }
+
+    /// The plan file of this problem without any motion: what the verifier judges grasps by.
+    ///
+    /// Whether all contacts share an elliptic cone is found out by asking the contact model about some.
+    pub fn grasp_file(&self, seed: u64) -> Result<Plan, RunError> {
+        let problem = &self.scenario.problem;
+        let cones =
+            Cones::of(&self.probes(), self.plugins.contact_model.as_ref(), self.scenario.object.friction);
+        let claims = self.claims(problem, &cones);
+        Ok(Plan {
+            format: Format::RegraspPlan,
+            version: VERSION,
+            scenario: self.resolved_scenario(problem),
+            seed,
+            versions: [("regrasp".to_owned(), env!("CARGO_PKG_VERSION").to_owned())].into(),
+            object: self.object_record(),
+            notes: Default::default(),
+            claims,
+            goals_reached: Vec::new(),
+            stopped_by: None,
+            statistics: Default::default(),
+            certificate: None,
+            segments: Vec::new(),
+        })
+    }
+
+    /// Contacts of all fingers all over the object.
+    fn probes(&self) -> Motion {
+        let (count, mut random) = (self.hand().finger_count(), Random::from_key(0, 0, 0, 0));
+        let probe = |_| Configuration {
+            X_HO: Pose::identity(),
+            joints: PerFinger::from_fn(count, |finger| self.hand().finger(finger).rest),
+            contacts: PerFinger::from_fn(count, |_| Some(self.plugins.surface.sample(&mut random))),
+        };
+        let states = (0..PROBES).map(probe).collect();
+        Motion {
+            segments: vec![Segment {
+                kind: SegmentKind::Transfer,
+                states,
+                times: vec![],
+                velocities: vec![],
+            }],
+        }
     }
 
     /// The facets of a primitive, a mesh standing in the scenario; and the surface that contacts live on,

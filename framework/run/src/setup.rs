@@ -120,6 +120,24 @@ pub struct Setup<'a> {
 impl<'a> Setup<'a> {
     /// Builds collision and plugins; `choices` as the scenario gives them or changed since.
     pub fn new(scenario: &'a Scenario, choices: &Choices, registry: &Registry) -> Result<Self, RunError> {
+        Self::build(scenario, choices, registry, poses)
+    }
+
+    /// The same without start and goals, for work on grasps: nothing is asked of them, and no plugin is told.
+    pub fn without_ends(
+        scenario: &'a Scenario,
+        choices: &Choices,
+        registry: &Registry,
+    ) -> Result<Self, RunError> {
+        Self::build(scenario, choices, registry, |_, _| Ok(Vec::new()))
+    }
+
+    fn build(
+        scenario: &'a Scenario,
+        choices: &Choices,
+        registry: &Registry,
+        poses: impl Fn(&Scenario, &SceneClearance) -> Result<Vec<Pose>, ScenarioError>,
+    ) -> Result<Self, RunError> {
         let choices = choices.resolve(registry)?;
         let limits = &scenario.problem.limits;
         let clearance = SceneClearance::new(

@@ -71,6 +71,35 @@ impl Rolling {
     }
 }
 
+/// How far a contact as it is stated is from where the fingertip really touches.
+pub(crate) struct Deviation {
+    /// Of the point on the object (m).
+    pub(crate) on_object: f64,
+    /// Of the point on the fingertip (m).
+    pub(crate) on_fingertip: f64,
+    /// Of the normal: the angle (rad), or what its length lacks.
+    pub(crate) normal: f64,
+}
+
+/// Compares a stated contact with the touch of its finger.
+pub(crate) fn deviation(
+    hand: &Chains,
+    frames: &Frames,
+    finger: usize,
+    claimed: &ContactRecord,
+    touch: &Touch,
+) -> Deviation {
+    let (p_OC, n_O) = (Vec3::from(claimed.point_O), Vec3::from(claimed.normal_O));
+    let R_HF = frames.last_link(&hand.fingers[finger]).rotation;
+    let p_HC = frames.p_HTip[finger] + R_HF * Vec3::from(claimed.point_F);
+    let angle = n_O.cross(&touch.n_O).norm().atan2(n_O.dot(&touch.n_O));
+    Deviation {
+        on_object: (p_OC - touch.p_OC).norm(),
+        on_fingertip: (frames.X_HO * Point3::from(p_OC) - Point3::from(p_HC)).norm(),
+        normal: angle.max((n_O.norm() - 1.0).abs()),
+    }
+}
+
 impl<'s> ContactChecks<'s> {
     pub(crate) fn new(hand: &'s Chains, scene: &'s Scene, tolerances: &Tolerances, law: TransferLaw) -> Self {
         Self {
@@ -139,13 +168,10 @@ impl<'s> ContactChecks<'s> {
         place: impl Fn() -> Place,
         finger: usize,
     ) {
-        let (p_OC, n_O) = (Vec3::from(claimed.point_O), Vec3::from(claimed.normal_O));
-        self.closure.note((p_OC - touch.p_OC).norm(), &place);
-        let R_HF = frames.last_link(&self.hand.fingers[finger]).rotation;
-        let p_HC = frames.p_HTip[finger] + R_HF * Vec3::from(claimed.point_F);
-        self.closure.note((frames.X_HO * Point3::from(p_OC) - Point3::from(p_HC)).norm(), &place);
-        let angle = n_O.cross(&touch.n_O).norm().atan2(n_O.dot(&touch.n_O));
-        self.normals.note(angle.max((n_O.norm() - 1.0).abs()), place);
+        let off = deviation(self.hand, frames, finger, claimed, touch);
+        self.closure.note(off.on_object, &place);
+        self.closure.note(off.on_fingertip, &place);
+        self.normals.note(off.normal, place);
     }
 
     /// Measures the slip since touch-down: what rolling adds up, or how far a fixed point has strayed from

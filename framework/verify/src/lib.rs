@@ -4,6 +4,7 @@
 //! object's mesh, slip, limits, stability with its own proofs, distances by parry. It works at ten times the
 //! plan's resolution on the motion that the plan means (joints and position linear, orientation by slerp
 //! between states), and reports for each check the worst value, the limit and the place.
+//! [`GraspVerifier`] judges grasps by themselves, in which nothing moves.
 
 mod border;
 mod claims;
@@ -11,6 +12,7 @@ mod clearance;
 mod contact_checks;
 mod controller;
 mod ends;
+mod grasp;
 mod hand;
 mod lift;
 mod motion_checks;
@@ -27,6 +29,7 @@ mod track;
 mod verdict;
 mod walk;
 
+pub use grasp::{GraspFigures, GraspJudge, GraspVerifier};
 pub use series::{SeriesError, StateFigures, series};
 pub use verdict::{Check, Side, Verdict};
 pub use walk::verify;

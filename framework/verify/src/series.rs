@@ -35,6 +35,12 @@ impl fmt::Display for SeriesError {
 
 impl std::error::Error for SeriesError {}
 
+impl SeriesError {
+    pub(crate) fn new(note: String) -> Self {
+        Self(note)
+    }
+}
+
 /// The figures of every state, segment after segment; `Err` says what in the plan makes no sense.
 ///
 /// At the states alone: between them a clearance can be smaller. Cost: below 0.5 ms a state of four fingers,

@@ -96,7 +96,7 @@ pub(crate) fn legs<'p>(segments: &'p [SegmentRecord], hand: &Chains) -> Result<V
     if form.worst() == Some(0.0) { Ok(legs) } else { Err(Box::new(form)) }
 }
 
-fn state<'p>(record: &'p StateRecord, hand: &Chains) -> Result<State<'p>, &'static str> {
+pub(crate) fn state<'p>(record: &'p StateRecord, hand: &Chains) -> Result<State<'p>, &'static str> {
     let count = hand.fingers.len();
     let fit = |rows: &[Vec<f64>]| {
         rows.len() == count && rows.iter().zip(&hand.fingers).all(|(q, chain)| q.len() == chain.joints.len())

@@ -21,6 +21,7 @@ from ._errors import (
     StudyError,
     VerificationError,
 )
+from ._grasps import Grasps, grasps
 from ._hand import Finger, Hand
 from ._pieces import (
     Bench,
@@ -72,6 +73,7 @@ __all__ = [
     "Graph",
     "GraphStrategy",
     "Grasp",
+    "Grasps",
     "Hand",
     "Hold",
     "LocalPlanner",
@@ -107,6 +109,7 @@ __all__ = [
     "compare",
     "conformance",
     "force_closure",
+    "grasps",
     "internal_forces",
     "load",
     "plan",

@@ -262,6 +262,9 @@ class Bench:
     ) -> list[Configuration]: ...
     def margins(self, configurations: list[Configuration]) -> _Array: ...
 
+def grasps(
+    scenario: Scenario, asked: dict[str, Any], threads: int, changes: dict[str, Any]
+) -> bytes: ...
 def solve(
     scenario: Scenario,
     seed: int,

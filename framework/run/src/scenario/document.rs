@@ -5,6 +5,7 @@ use regrasp_api::{KeyPath, Refusal, Refuse, Step, check_schema};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
+use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -36,6 +37,24 @@ impl Document {
         let table = DeTable::parse(text).map_err(|error| document.syntax(&error))?;
         document.value = document.convert_table(table.get_ref(), &KeyPath::default())?;
         Ok(document)
+    }
+
+    /// Gives a key of the outermost table a value where the file has none.
+    pub(super) fn fill(&mut self, key: &str, value: Value) {
+        if let Value::Object(table) = &mut self.value {
+            table.entry(key).or_insert(value);
+        }
+    }
+
+    /// Puts a mesh's file in the place of the object's shape; the scale of a mesh stays.
+    pub(super) fn put_mesh(&mut self, file: &Path) {
+        let Some(Value::Object(object)) = self.value.get_mut("object") else { return };
+        let scale = object.get("shape").and_then(|shape| shape.get("scale")).cloned();
+        let mut shape = Map::new();
+        shape.insert("kind".into(), "mesh".into());
+        shape.insert("file".into(), file.to_string_lossy().into());
+        shape.extend(scale.map(|scale| ("scale".to_owned(), scale)));
+        object.insert("shape".into(), Value::Object(shape));
     }
 
     /// The data as a `T`, after a comparison with its schema, which gives the better messages.

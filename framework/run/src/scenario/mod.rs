@@ -28,7 +28,7 @@ use regrasp_host::{Choices, HostError, Registry};
 use regrasp_world::{
     ChainHand, WorldError, check_problem, check_units, load_object, object_of_mesh, rigid_body,
 };
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
@@ -71,8 +71,34 @@ impl Scenario {
 
 /// Loads the built-in scenario of this name, or else the file.
 pub fn load(name: &str, registry: &Registry) -> Result<Scenario, ScenarioError> {
+    with_text(name, |file, text, folder| from_text(file, text, folder, registry))
+}
+
+/// Loads it for work on grasps: start and goals may be missing, and `mesh`, a file, takes the place of the
+/// object's shape where it is given. A scale that the scenario gives for a mesh stays.
+pub fn load_for_grasps(
+    name: &str,
+    mesh: Option<&Path>,
+    registry: &Registry,
+) -> Result<Scenario, ScenarioError> {
+    with_text(name, |file, text, folder| {
+        let mut document = Document::parse(file, text)?;
+        document.fill("start", json!({ "pose": {} }));
+        document.fill("goal", json!([{ "pose": { "position": [1.0, 0.0, 0.0] } }]));
+        if let Some(mesh) = mesh {
+            document.put_mesh(mesh);
+        }
+        from_document(file, document, folder, registry)
+    })
+}
+
+/// Hands the scenario's text on, with what messages call it, and the folder of the files that it names.
+fn with_text(
+    name: &str,
+    read_text: impl Fn(&str, &str, &Path) -> Result<Scenario, ScenarioError>,
+) -> Result<Scenario, ScenarioError> {
     if let Some(built_in) = find(SCENARIOS, name) {
-        return from_text(built_in.name, built_in.text, Path::new(""), registry);
+        return read_text(built_in.name, built_in.text, Path::new(""));
     }
     let path = Path::new(name);
     let is_path = path.extension().is_some() || path.components().count() > 1 || path.exists();
@@ -86,7 +112,7 @@ pub fn load(name: &str, registry: &Registry) -> Result<Scenario, ScenarioError> 
             "it is a plan, not a scenario; plan files are for `verify`, `view`, `export` and `replay`";
         return Err(ScenarioError::Unreadable { place: Place::file(name), cause: cause.into() });
     }
-    from_text(name, &text, path.parent().unwrap_or(Path::new("")), registry)
+    read_text(name, &text, path.parent().unwrap_or(Path::new("")))
 }
 
 /// Whether a text is a plan file's.
@@ -103,7 +129,15 @@ pub fn from_text(
     folder: &Path,
     registry: &Registry,
 ) -> Result<Scenario, ScenarioError> {
-    let document = Document::parse(file, text)?;
+    from_document(file, Document::parse(file, text)?, folder, registry)
+}
+
+fn from_document(
+    file: &str,
+    document: Document,
+    folder: &Path,
+    registry: &Registry,
+) -> Result<Scenario, ScenarioError> {
     let content: ScenarioFile = document.read()?;
     let mut choices = choices(&document, &content.plugins, registry)?;
     hold::apply(&document, &content, &mut choices)?;

@@ -74,6 +74,16 @@ impl Force {
 /// The forces of all contacts of a grasp.
 pub(crate) type Forces = [Force; MAX_FINGERS];
 
+/// Forces on the object (in O), one for each contact, in the contacts' scaled coordinates; no torsion.
+pub(crate) fn scaled(contacts: &[Contact], given_O: &[Vec3]) -> Forces {
+    let mut forces = [Force::default(); MAX_FINGERS];
+    for (force, (contact, given)) in forces.iter_mut().zip(contacts.iter().zip(given_O)) {
+        force.normal = contact.n.dot(given);
+        force.tangential = (given - contact.n * force.normal) / contact.mu;
+    }
+    forces
+}
+
 /// Checked forces: balanced and strictly inside every cone, with normal parts that sum to 1, at a grasp of
 /// rank 6.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Forces within the joints' efforts that hold the object's weight and a load, at a share of the friction: a
 //! proof by arithmetic.
 
-use super::force::{Contact, Correction, Forces, LEAST_SLACK};
+use super::force::{Contact, Correction, Forces, LEAST_SLACK, scaled};
 use super::held::Held;
 use super::load::icosahedron;
 use super::socp;
@@ -95,6 +95,27 @@ impl HoldingCheck {
         self.gauge.note(found.unwrap_or_else(|slack| slack), place);
     }
 
+    /// The slack with which one grasp is proved to hold the load, `Err` what could not be proved; forces (N,
+    /// in O) that hold the weight, where some are known, save the solver.
+    pub(crate) fn figure(
+        &mut self,
+        leg: &Leg<'_>,
+        hand: &Chains,
+        frames: &Frames,
+        touches: &[Option<Touch>; MAX_FINGERS],
+        forces_O: &[Vec3],
+    ) -> Result<f64, f64> {
+        let held = self.held(leg, hand, frames, touches);
+        let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
+        self.start();
+        self.solved = 0.0;
+        if forces_O.len() == held.contacts.len() && self.cone.mu > 0.0 {
+            let given: Vec<Vec3> = forces_O.iter().map(|force| force / self.unit).collect();
+            self.carried = Some(vec![scaled(&held.contacts, &given); self.wanted(&weight_O).len()]);
+        }
+        self.prove(&held, &weight_O)
+    }
+
     fn held(
         &self,
         leg: &Leg<'_>,
@@ -161,6 +182,7 @@ impl HoldingCheck {
         wanted: &[Vector6<f64>],
     ) -> Result<f64, f64> {
         let mut least = f64::INFINITY;
+        let steepest = 1.0 + self.steepest(held);
         for (forces, wanted) in forces.iter_mut().zip(wanted) {
             *forces = correction.towards(&held.contacts, forces, wanted);
             let mut residual = -wanted;
@@ -171,7 +193,6 @@ impl HoldingCheck {
             }
             // What balances the residual exactly is smaller than residual/singular, and must leave neither
             // cones nor efforts.
-            let steepest = 1.0 + self.steepest(held);
             if !(slack >= LEAST_SLACK && residual.norm() * steepest <= 0.5 * correction.singular * slack) {
                 return Err(slack.min(0.0));
             }

@@ -1,6 +1,6 @@
 //! What the plan's own forces hold: arithmetic on the forces that its states record.
 
-use super::force::{Contact, Correction, Force, Forces};
+use super::force::{Contact, Correction, Force, Forces, scaled};
 use super::held::{Held, Row};
 use super::load::icosahedron;
 use crate::hand::Chains;
@@ -78,14 +78,53 @@ impl HoldsCheck {
             return;
         };
         let place = |note: &str| Place { note: Some(note.into()), ..leg.at(state) };
+        let (held, forces) = match self.recorded(leg, state, recorded, hand, frames) {
+            Ok(read) => read,
+            Err(fault) => return self.gauge.fault(|| place(fault)),
+        };
+        let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
+        if let Some(fault) = self.fault(&held, &forces, &weight_O) {
+            self.gauge.fault(|| place(fault));
+        }
+        let figures = self.figures(&held, &forces, &weight_O);
+        self.take(&figures, || leg.at(state));
+    }
+
+    /// The forces that one state records, by themselves: the friction and the largest share of an effort that
+    /// they take; `Err` says what is wrong with them, `None` where there are none.
+    pub(crate) fn alone(
+        &self,
+        leg: &Leg<'_>,
+        state: usize,
+        hand: &Chains,
+        frames: &Frames,
+    ) -> Option<Result<(f64, f64), &'static str>> {
+        let recorded = leg.states[state].record.forces.as_ref()?;
+        Some(self.recorded(leg, state, recorded, hand, frames).and_then(|(held, forces)| {
+            let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
+            match self.fault(&held, &forces, &weight_O) {
+                Some(fault) => Err(fault),
+                None => Ok(self.needs(&held, &forces)),
+            }
+        }))
+    }
+
+    /// The grasp and the forces that a state records.
+    fn recorded(
+        &self,
+        leg: &Leg<'_>,
+        state: usize,
+        recorded: &[Option<[f64; 3]>],
+        hand: &Chains,
+        frames: &Frames,
+    ) -> Result<(Held, Forces), &'static str> {
         let (mut held, mut given) = (Held::default(), Vec::new());
-        for (finger, contact) in record.contacts.iter().enumerate() {
+        for (finger, contact) in leg.states[state].record.contacts.iter().enumerate() {
             let force = recorded.get(finger).copied().flatten();
             let holds = contact.filter(|_| leg.moving != Some(finger));
             let (Some(contact), Some(force)) = (holds, force) else {
                 if force.is_some() || holds.is_some() {
-                    self.gauge.fault(|| place("forces belong to the fingers that hold, and to all of them"));
-                    return;
+                    return Err("forces belong to the fingers that hold, and to all of them");
                 }
                 continue;
             };
@@ -96,26 +135,10 @@ impl HoldsCheck {
             given.push(Vec3::from(force));
         }
         if !given.iter().flatten().all(|x| x.abs() < 1e9) {
-            self.gauge.fault(|| place("a force that is not finite, or beyond any hand"));
-            return;
+            return Err("a force that is not finite, or beyond any hand");
         }
-        let forces = self.forces(&held, &given);
-        let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
-        if let Some(fault) = self.fault(&held, &forces, &weight_O) {
-            self.gauge.fault(|| place(fault));
-        }
-        let figures = self.figures(&held, &forces, &weight_O);
-        self.take(&figures, || leg.at(state));
-    }
-
-    /// The recorded forces in the contacts' scaled coordinates.
-    fn forces(&self, held: &Held, given: &[Vec3]) -> Forces {
-        let mut forces = [Force::default(); MAX_FINGERS];
-        for (force, (contact, given)) in forces.iter_mut().zip(held.contacts.iter().zip(given)) {
-            force.normal = contact.n.dot(given);
-            force.tangential = (given - contact.n * force.normal) / contact.mu;
-        }
-        forces
+        let forces = scaled(&held.contacts, &given);
+        Ok((held, forces))
     }
 
     /// What is wrong with the forces of one state.
@@ -145,10 +168,15 @@ impl HoldsCheck {
         None
     }
 
-    fn figures(&self, held: &Held, forces: &Forces, weight_O: &Vec3) -> Figures {
+    /// The friction, and the largest share of an effort, that forces take.
+    fn needs(&self, held: &Held, forces: &Forces) -> (f64, f64) {
         let each = || (0..held.contacts.len()).map(|i| (i, &forces[i]));
         let friction = each().map(|(_, force)| friction_of(force)).fold(0.0, f64::max) * self.cone.mu;
-        let effort = each().map(|(i, force)| effort_of(held, i, force, self.length)).fold(0.0, f64::max);
+        (friction, each().map(|(i, force)| effort_of(held, i, force, self.length)).fold(0.0, f64::max))
+    }
+
+    fn figures(&self, held: &Held, forces: &Forces, weight_O: &Vec3) -> Figures {
+        let (friction, effort) = self.needs(held, forces);
         let mut figures =
             Figures { friction: friction.min(NO_FRICTION_DOES), mass: 0.0, disturbance: 0.0, effort };
         let Some(correction) = Correction::new(&held.contacts) else { return figures };

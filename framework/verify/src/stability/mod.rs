@@ -211,6 +211,24 @@ impl StabilityCheck {
         Some(lower)
     }
 
+    /// [`Self::figure`] of a grasp at rest of which forces (N, in O) are known that hold the object: where
+    /// they prove closure, no solver is asked.
+    pub(crate) fn figure_from(
+        &mut self,
+        leg: &Leg<'_>,
+        R_HO: &Rotation,
+        touches: &[Option<Touch>; MAX_FINGERS],
+        forces_O: &[Vec3],
+    ) -> Option<f64> {
+        let cone = self.cone.filter(|cone| self.load.is_none() && cone.mu > 0.0);
+        let proved = cone.and_then(|cone| {
+            let contacts = self.contacts(leg, &cone, touches);
+            let proof = force::prove(&contacts, &force::scaled(&contacts, forces_O))?;
+            Some(force::margin(&contacts, &proof))
+        });
+        proved.or_else(|| self.figure(leg, R_HO, touches))
+    }
+
     /// The smallest margin, for the certificate: bounds that a carried force left loose are sharpened with
     /// the best one.
     pub(crate) fn extreme(&mut self) -> Option<Extreme> {
