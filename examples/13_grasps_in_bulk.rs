@@ -1,4 +1,4 @@
-//! Finds many distinct, verified grasps of a cube by a hand like the Allegro hand, and says what they are like.
+//! Finds many distinct, verified grasps of a cube by a hand like the Allegro hand, and says how they are.
 //!
 //! `cargo run --release --example 13_grasps_in_bulk`
 //!
@@ -21,7 +21,8 @@ impl Progress for Silent {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let registry = Registry::linked()?;
-    let scenario = scenario::load_for_grasps("allegro-cube", None, &registry)?; // start and goals do not count
+    // Start and goals do not count.
+    let scenario = scenario::load_for_grasps("allegro-cube", None, &registry)?;
     let setup = Setup::without_ends(&scenario, &scenario.choices, &registry)?;
     let wish = Wish { count: 400, spread: 0.003, ..Wish::default() };
     let source = GraspSource::new(&setup, &wish)?;
@@ -35,7 +36,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     grasps.iter().for_each(|grasp| by_fingers.entry(grasp.q.holding().len()).or_default().push(grasp));
     for (fingers, grasps) in &by_fingers {
         let liftable = grasps.iter().filter(|grasp| !grasp.liftable.is_empty()).count();
-        let mut needed: Vec<f64> = grasps.iter().filter_map(|g| g.held.as_ref()).map(|h| h.friction).collect();
+        let held = grasps.iter().filter_map(|grasp| grasp.held.as_ref());
+        let mut needed: Vec<f64> = held.map(|held| held.friction).collect();
         needed.sort_by(f64::total_cmp);
         let median = needed.get(needed.len() / 2).copied().unwrap_or(f64::NAN);
         println!("{fingers:>7}  {:>6}  {liftable:>32}  {median:>22.2}", grasps.len());

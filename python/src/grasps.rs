@@ -119,7 +119,9 @@ fn found(
     let (mut search, mut held) = (Search::new(&source), Held::default());
     collect(&mut search, threads, watch, &Silent, &mut held)?;
     let (layout, mut bytes) = (source.layout(), Vec::new());
-    let info = serde_json::json!({ "format": "regrasp-grasps", "version": 2, "seed": wish.seed, "spread": wish.spread });
+    let info = serde_json::json!({
+        "format": "regrasp-grasps", "version": 2, "seed": wish.seed, "spread": wish.spread,
+    });
     let (info, problem) = (info.to_string(), serde_json::json!(source.plan()).to_string());
     let set = Set {
         rows: &held,

@@ -112,7 +112,7 @@ impl<'s> Search<'s> {
         self.grasps >= self.source.wish().count as u64
     }
 
-    /// Leaves out of the next chunk what is too like earlier grasps, too much of one kind, or too much at all.
+    /// Leaves out of the next chunk what is too like earlier grasps, too much of a kind, or too much at all.
     fn keep(&mut self, chunk: Chunk) -> Kept {
         let mut kept = Kept { chunk: self.next, counts: chunk.counts, ..Kept::default() };
         let mut numbers = vec![None; chunk.grasps.len()];
@@ -157,8 +157,8 @@ impl<'s> Search<'s> {
 
 /// Searches on, on `threads` threads, until there are enough grasps or no more, or it is stopped.
 ///
-/// What was taken by the sink is the same for any number of threads; a stop from outside leaves a beginning of
-/// it, whole chunks.
+/// What was taken by the sink is the same for any number of threads; a stop from outside leaves a beginning
+/// of it, whole chunks.
 pub fn collect(
     search: &mut Search<'_>,
     threads: usize,

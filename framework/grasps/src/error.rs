@@ -61,7 +61,7 @@ pub enum GraspsError {
         cause: std::io::Error,
     },
     /// What was kept of another search.
-    #[error("`{}` holds the begun search for other grasps; delete it, or begin anew with `--force`", path.display())]
+    #[error("`{}` is the begun search for other grasps; delete it, or give `--force`", path.display())]
     OtherSearch {
         /// The file.
         path: PathBuf,

@@ -39,8 +39,8 @@ impl PoseLaw {
     }
 }
 
-/// A box that holds all origins of the object at which `fewest` fingers can touch it: along each axis, what so
-/// many of the fingers' own boxes share.
+/// A box that holds all origins of the object at which `fewest` fingers can touch it: along each axis, what
+/// so many of the fingers' own boxes share.
 fn common_box(task: &Task<'_>, radius: f64, fewest: usize) -> (Vec3, Vec3) {
     let fingers = FingerSet::first(task.hand.finger_count());
     let bound = |axis: usize, side: f64| {

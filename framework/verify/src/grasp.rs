@@ -1,4 +1,4 @@
-//! Grasps by themselves, in which nothing moves: form, limits, closure, normals, distances, stability, forces.
+//! Grasps by themselves, nothing moving: form, limits, closure, normals, distances, stability, forces.
 
 use crate::clearance::ClearanceCheck;
 use crate::contact_checks::deviation;

@@ -19,10 +19,10 @@ pub struct Keyframes {
     meshes: Vec<File>,
 }
 
-/// Makes the model of a set; `plan` says hand, object and claims, `stem` begins the names of the meshes' files.
+/// Makes the model of a set; `plan` says hand, object and claims, `stem` begins the names of mesh files.
 ///
-/// It is the model that a plan's export makes, with its motors and their gains. Keyframes are called `0`, `1`,
-/// …; `qpos` holds joints and object, `ctrl` what the motors must aim at so that they exert the grasp's
+/// It is the model that a plan's export makes, with its motors and their gains. Keyframes are called `0`,
+/// `1`, …; `qpos` holds joints and object, `ctrl` what the motors must aim at so that they exert the grasp's
 /// efforts.
 pub fn keyframes(set: &Set<'_>, plan: &Plan, stem: &str) -> Result<Keyframes, GraspsError> {
     let mut plan = plan.clone();
@@ -82,7 +82,7 @@ impl Keyframes {
 fn key(number: u64, grasp: &BulkGrasp, hand: &HandDescription) -> String {
     let settings = SimulationSettings::default();
     let (mut qpos, mut ctrl) = (String::new(), String::new());
-    let mut push = |text: &mut String, x: f64| {
+    let push = |text: &mut String, x: f64| {
         let space = if text.is_empty() { "" } else { " " };
         let _ = write!(text, "{space}{x}");
     };

@@ -19,17 +19,19 @@ const WIDE: u64 = u32::MAX as u64;
 /// | `grasps_info` | () | JSON text: scenario, object, hand, plugins, seed, spread, versions |
 /// | `grasps_problem` | () | JSON text: the whole problem, as a plan file without motion |
 /// | `finger_names`, `joint_names` | (F), (J) | texts |
-/// | `pose` | (G) | number of the pose that was drawn: grasps of one number differ in fingers and contacts alone |
-/// | `object_position`, `object_orientation` | (G, 3), (G, 4) | the object's pose in the hand's frame: m; w, x, y, z |
+/// | `pose` | (G) | number of the pose that was drawn |
+/// | `object_position`, `object_orientation` | (G, 3), (G, 4) | in the hand's frame: m; w, x, y, z |
 /// | `joints` | (G, J) | rad; m where prismatic |
-/// | `holding`, `liftable` | (G, F) | which fingers hold; which of these may be lifted, the others being stable |
+/// | `holding`, `liftable` | (G, F) | which fingers hold; which of these may be lifted |
 /// | `facet` | (G, F) | the facet that a finger touches |
 /// | `contact_point_O`, `contact_normal_O` | (G, F, 3) | in the object's frame: m; outward |
-/// | `force_O`, `efforts` | (G, F, 3), (G, J) | what holds the object's weight: N on the object, in its frame; N·m |
+/// | `force_O`, `efforts` | (G, F, 3), (G, J) | what holds the weight: N on the object, in O; N·m |
 /// | `margin` | (G) | the verifier's certified margin |
 /// | `clearance` | (G) | smallest distance of bodies that may not touch (m) |
-/// | `friction`, `effort_share` | (G) | coefficient of friction that the forces need; largest share of an effort limit |
-/// | `edges`, `edge_finger` | (E, 2), (E) | regrasps: numbers of two grasps of one pose, and the finger that moves; only where asked for |
+/// | `friction`, `effort_share` | (G) | friction that the forces need; largest share of an effort limit |
+/// | `edges`, `edge_finger` | (E, 2), (E) | regrasps: two grasps of one pose, and the finger that moves |
+///
+/// Grasps of one pose differ in fingers and contacts alone; `edges` are there where they were asked for.
 pub fn npz(set: &Set<'_>, out: &mut dyn Write) -> io::Result<()> {
     let mut archive = Archive::stream(out);
     archive.texts("grasps_info", None, &[set.info])?;
