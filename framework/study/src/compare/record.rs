@@ -42,13 +42,13 @@ impl RunStatus {
 }
 
 /// The phases of planning that are timed, in their order: keys of [`Times::phases_s`].
-pub const PHASES: [&str; 4] = ["endpoints", "search", "smoothing", "timing"];
+pub const PHASES: [&str; 5] = ["endpoints", "relay", "search", "smoothing", "timing"];
 
 /// Seconds, which no two runs share: all that a repeated run may change in its record.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Times {
-    /// Planning alone, on one thread: start and goal grasps, search, smoothing, timing (s).
+    /// Planning alone, on one thread: start and goal grasps, relays, search, smoothing, timing (s).
     pub planning_s: f64,
     /// The verification of the plan (s); 0 where there was no plan.
     pub verification_s: f64,
