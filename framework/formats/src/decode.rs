@@ -20,7 +20,8 @@ pub fn read_xml(path: &Path) -> Result<String, Fault> {
     decode(&std::fs::read(path).map_err(unreadable)?)
 }
 
-fn decode(bytes: &[u8]) -> Result<String, Fault> {
+/// The text of an XML file.
+pub(crate) fn decode(bytes: &[u8]) -> Result<String, Fault> {
     let encoding = match Encoding::for_bom(bytes) {
         Some((encoding, _)) => encoding,
         None => declared(bytes)?,

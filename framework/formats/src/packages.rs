@@ -37,7 +37,8 @@ enum Name {
 impl Packages {
     /// The folders to look in for a robot's file: the given ones, then those above the file.
     pub fn new(robot: &Path, given: &[PathBuf]) -> Self {
-        let home = robot.parent().unwrap_or(Path::new("")).to_owned();
+        let parent = robot.parent().filter(|parent| !parent.as_os_str().is_empty());
+        let home = parent.unwrap_or(Path::new(".")).to_owned();
         // A bare file name has no ancestors to go through: those of the whole path are meant.
         let whole = std::path::absolute(&home).unwrap_or_else(|_| home.clone());
         let above = whole.ancestors().take(ANCESTORS).map(Path::to_owned);
@@ -140,7 +141,7 @@ fn remote(name: &str) -> NoSuchFile {
 }
 
 /// With `%20` and the like as the characters that they stand for; as it is where that makes no text.
-fn decoded(name: &str) -> String {
+pub(crate) fn decoded(name: &str) -> String {
     let bytes = name.as_bytes();
     let hex = |i: usize| bytes.get(i).and_then(|&digit| char::from(digit).to_digit(16));
     let (mut out, mut i) = (Vec::with_capacity(bytes.len()), 0);

@@ -8,6 +8,9 @@ pub(crate) type Element<'a> = Node<'a, 'a>;
 /// The most elements, texts and comments of a file: above this it describes no hand.
 const MOST_NODES: u32 = 5_000_000;
 
+/// No number of a robot's file is larger.
+pub(crate) const LARGEST: f64 = 1e9;
+
 /// What to do with a file of macros.
 pub(crate) const EXPAND: &str =
     "a xacro file must be expanded first, as by `xacro hand.urdf.xacro > hand.urdf`";
@@ -64,7 +67,15 @@ pub(crate) fn numbers<const N: usize>(element: &Element<'_>, name: &str) -> Resu
 pub(crate) fn list(element: &Element<'_>, name: &str) -> Result<Option<Vec<f64>>, Fault> {
     let Some(text) = element.attribute(name) else { return Ok(None) };
     let read = text.split_whitespace().map(|word| word.parse::<f64>().ok().filter(|x| x.is_finite()));
-    read.collect::<Option<Vec<f64>>>().map(Some).ok_or_else(|| wrong(element, name, 0))
+    let all = read.collect::<Option<Vec<f64>>>().ok_or_else(|| wrong(element, name, 0))?;
+    match all.iter().find(|x| x.abs() > LARGEST) {
+        None => Ok(Some(all)),
+        Some(&x) => {
+            let (tag, most) = (element.tag_name().name(), LARGEST);
+            let message = format!("<{tag} {name}>: {x:e} is outside -{most:e}..={most:e}");
+            Err(Fault::at(line(element), message))
+        }
+    }
 }
 
 /// The refusal of an attribute that is not so many numbers (0: any count).

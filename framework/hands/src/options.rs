@@ -105,9 +105,9 @@ pub(crate) fn check(options: &HandOptions) -> Result<(), Fault> {
     within("fingertip_radius", options.fingertip_radius, (1e-4, 0.2), " m")?;
     within("scale", options.scale, (1e-6, 1e6), "")?;
     within("mesh_scale", options.mesh_scale, (1e-6, 1e6), "")?;
-    within("acceleration", options.acceleration, (1e-3, 1e9), " rad/s²")?;
-    within("velocity", options.velocity, (1e-3, 1e9), " rad/s")?;
-    within("effort", options.effort, (1e-6, 1e9), " N·m")?;
+    within("acceleration", options.acceleration, (1e-3, 1e6), " rad/s²")?;
+    within("velocity", options.velocity, (1e-3, 1e6), " rad/s")?;
+    within("effort", options.effort, (1e-6, 1e6), " N·m")?;
     within("mesh_pieces", options.mesh_pieces.map(|n| n as f64), (1.0, 64.0), "")?;
     for offset in options.tip_offset.iter().flatten() {
         within("tip_offset", Some(*offset), (-10.0, 10.0), " m")?;
@@ -128,9 +128,9 @@ fn check_joint(choice: &JointChoice) -> Result<(), Fault> {
     of_joint("lower", choice.lower, (-TURNS, TURNS), " rad")?;
     of_joint("upper", choice.upper, (-TURNS, TURNS), " rad")?;
     of_joint("position", choice.position, (-TURNS, TURNS), " rad")?;
-    of_joint("velocity", choice.velocity, (1e-3, 1e9), " rad/s")?;
-    of_joint("effort", choice.effort, (1e-6, 1e9), " N·m")?;
-    of_joint("acceleration", choice.acceleration, (1e-3, 1e9), " rad/s²")?;
+    of_joint("velocity", choice.velocity, (1e-3, 1e6), " rad/s")?;
+    of_joint("effort", choice.effort, (1e-6, 1e6), " N·m")?;
+    of_joint("acceleration", choice.acceleration, (1e-3, 1e6), " rad/s²")?;
     match (choice.lower, choice.upper) {
         (None, None) => Ok(()),
         (Some(lower), Some(upper)) if lower < upper => Ok(()),

@@ -39,6 +39,23 @@ fn stl() -> String {
     text
 }
 
+/// Decimal commas in place of points.
+fn with_commas(text: &str) -> String {
+    let is_number = |word: &str| word.parse::<f64>().is_ok();
+    text.split_inclusive([' ', '\t', '\n'])
+        .map(|word| if is_number(word.trim()) { word.replace('.', ",") } else { word.to_owned() })
+        .collect()
+}
+
+/// Commas between the coordinates of vertices.
+fn with_lists(text: &str) -> String {
+    let line = |line: &str| match line.trim().strip_prefix("vertex") {
+        Some(rest) => format!("vertex {}\n", rest.split_whitespace().collect::<Vec<_>>().join(", ")),
+        None => format!("{line}\n"),
+    };
+    text.lines().map(line).collect()
+}
+
 fn obj(vertices: &[[f64; 3]], facets: &[[usize; 3]]) -> String {
     let vertices: String = vertices.iter().map(|v| format!("v {} {} {}\n", v[0], v[1], v[2])).collect();
     facets.iter().fold(vertices, |text, f| text + &format!("f {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1))
@@ -65,11 +82,116 @@ fn ascii_stl_is_read_in_every_dialect() {
         text.replace("outer loop", "outerloop").into_bytes(),
         apart.into_bytes(),
         utf16,
+        text.rsplit_once("endsolid").unwrap().0.into(),
+        text.replace('\n', " ").into_bytes(),
+        format!("# a remark\n; another\n{text}").into_bytes(),
+        format!("{text}\u{1a}").into_bytes(),
+        format!("{text}\0\0\0").into_bytes(),
+        with_commas(&text).into_bytes(),
+        with_lists(&text).into_bytes(),
     ];
     for (i, bytes) in dialects.into_iter().enumerate() {
         let mesh = load("part.stl", bytes).unwrap_or_else(|error| panic!("dialect {i}: {error}"));
         assert!((mesh.mass_properties().volume - 4.8e-5).abs() < 1e-12, "dialect {i}");
     }
+}
+
+#[test]
+fn an_stl_that_ends_too_early_or_late_is_told() {
+    let text = stl();
+    let cut = load("part.stl", &text[..text.len() / 3]).unwrap_err().to_string();
+    assert!(cut.contains("truncated") || cut.contains("damaged"), "{cut}");
+    let mut binary = vec![b' '; 80];
+    binary.extend(11_u32.to_le_bytes());
+    binary.extend(vec![0; 12 * 50]);
+    let message = load("part.stl", binary).unwrap_err().to_string();
+    assert!(message.contains("announces 11 facets, the file holds 12"), "{message}");
+}
+
+#[test]
+fn a_file_with_the_wrong_ending_is_told_by_its_content() {
+    for (name, content, what) in [
+        ("part.obj", stl(), "an STL file: give it the ending `.stl`"),
+        ("part.stl", obj(&CORNERS, &SIDES), "an OBJ file"),
+        ("part.ply", obj(&CORNERS, &SIDES), "an OBJ file"),
+        ("part.3mf", stl(), "an STL file"),
+    ] {
+        let message = load(name, content).unwrap_err().to_string();
+        assert!(message.contains(what), "{name}: {message}");
+    }
+    let message = load("part", stl()).unwrap_err().to_string();
+    assert!(message.contains("no ending"), "{message}");
+}
+
+#[test]
+fn obj_has_its_faces_anywhere_and_its_words_in_any_case() {
+    let text = obj(&CORNERS, &SIDES);
+    let (vertices, faces) = text.split_at(text.find('f').unwrap());
+    let negative =
+        SIDES.iter().map(|f| format!("f {} {} {}\n", f[0] as i64 - 4, f[1] as i64 - 4, f[2] as i64 - 4));
+    let negative: String = negative.collect();
+    for file in [
+        format!("{faces}{vertices}"),
+        text.to_uppercase(),
+        text.replace("f ", "fo "),
+        format!("{vertices}{negative}"),
+        format!("{text}f 1 2\nf 3\nl 1 2\n"),
+        text.replace("0.02", "0,02"),
+    ] {
+        let mesh = load("part.obj", &file).unwrap_or_else(|error| panic!("{file}: {error}"));
+        assert!((mesh.mass_properties().volume - 8e-6 / 6.0).abs() < 1e-15, "{file}");
+    }
+    let message = load("part.obj", vertices).unwrap_err().to_string();
+    assert!(message.contains("no faces"), "{message}");
+}
+
+#[test]
+fn a_ply_header_may_end_its_lines_with_cr() {
+    let vertices: String = CORNERS.iter().map(|v| format!("{} {} {}\n", v[0], v[1], v[2])).collect();
+    let faces: String = SIDES.iter().map(|f| format!("3 {} {} {}\n", f[0], f[1], f[2])).collect();
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n\
+                  property float z\nelement face 5\nproperty list uchar int vertex_index\nend_header\n";
+    let text = format!("{header}{vertices}{faces}2 0 1\n");
+    assert!(load("part.ply", text.replace('\n', "\r")).is_ok());
+    let cloud = text.replace("face 5", "face 0");
+    let message = load("part.ply", cloud).unwrap_err().to_string();
+    assert!(message.contains("points and no faces"), "{message}");
+}
+
+#[test]
+fn numbers_that_no_object_has_are_refused_as_such() {
+    for (number, reason) in [("1e160", "1e160 m is outside -1e6..=1e6"), ("1e-160", "1e-160 m large")] {
+        let message =
+            load("part.obj", obj(&CORNERS, &SIDES).replace("0.02", number)).unwrap_err().to_string();
+        assert!(message.contains(reason), "{message}");
+    }
+}
+
+#[test]
+fn one_body_inside_out_is_named_though_it_is_the_largest() {
+    let mut corners = CORNERS.to_vec();
+    corners.extend(CORNERS.map(|v| v.map(|x| 0.5 * x + 0.05)));
+    let outer = SIDES.map(|[a, b, c]| [a, c, b]);
+    let sides: Vec<[usize; 3]> = outer.into_iter().chain(SIDES.map(|f| f.map(|v| v + 4))).collect();
+    let message = load("part.obj", obj(&corners, &sides)).unwrap_err().to_string();
+    assert!(message.contains("body 1 of 2 (4 facets, near [0.0000"), "{message}");
+}
+
+#[test]
+fn what_was_done_to_close_a_mesh_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = MeshSource { file: Some("part.obj".into()), ..Default::default() };
+    let read = |text: String| {
+        std::fs::write(folder.path().join("part.obj"), text).unwrap();
+        read_mesh(&source, folder.path(), "shape").unwrap()
+    };
+    assert!(read(obj(&CORNERS, &SIDES)).remarks().is_empty());
+    let flat = read(obj(&CORNERS, &SIDES) + "f 1 1 2\nf 3 3 3\n");
+    assert!(flat.dropped == 2 && flat.remarks()[0].contains("2 facets without area"), "{flat:?}");
+    let mut corners = CORNERS.to_vec();
+    corners.push([0.02, 1e-7, 0.0]);
+    let seam = read(obj(&corners, &[[0, 2, 4], [0, 1, 3], [0, 3, 2], [1, 2, 3]]));
+    assert!(seam.welded > 1e-7 && seam.remarks()[0].contains("made one"), "{seam:?}");
 }
 
 #[test]
@@ -143,6 +265,29 @@ fn collada_outlines_count_and_holes_are_refused() {
     let message =
         load("part.dae", dae(&format!("{sides}<ph><p>1 2 3</p><h>0 1 2</h></ph>"), "")).unwrap_err();
     assert!(message.to_string().contains("<ph>: a polygon with holes"), "{message}");
+}
+
+#[test]
+fn collada_has_its_encodings_and_named_axes() {
+    let sides = "<p>0 2 1</p><p>0 1 3</p><p>0 3 2</p><p>1 2 3</p>";
+    let declared =
+        format!("<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?><!DOCTYPE COLLADA>{}", dae(sides, ""));
+    let mut latin = declared.into_bytes();
+    latin.extend(b"<!-- f\xfcnf -->");
+    assert!(load("part.dae", latin).is_ok());
+    let accessor = "<technique_common><accessor source=\"#a\" stride=\"3\"><param name=\"Y\"/><param name=\"X\"/>\
+                    <param name=\"Z\"/></accessor></technique_common></source><vertices";
+    let turned = dae(sides, "").replace("</source><vertices", accessor);
+    let fault = refusal("part.dae", turned);
+    assert!(matches!(fault, MeshError::InsideOut { .. }), "{fault}");
+    for (transform, reason) in [
+        ("<rotate>0 0 1 1e160</rotate>", "is outside ±36000°"),
+        ("<matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1</matrix>", "last row"),
+    ] {
+        let text = dae(sides, "").replace("<node><instance", &format!("<node>{transform}<instance"));
+        let message = load("part.dae", text).unwrap_err().to_string();
+        assert!(message.contains(reason), "{message}");
+    }
 }
 
 #[test]

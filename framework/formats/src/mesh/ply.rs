@@ -1,6 +1,6 @@
 //! PLY, ASCII and binary of either byte order (G. Turk, "The PLY Polygon File Format", 1994).
 
-use super::{Raw, polygon::triangulate};
+use super::{Raw, polygon::triangulate, text};
 use regrasp_api::Vec3;
 
 /// Coordinates of the element `vertex`, and the triangulated `vertex_indices` of the elements `face` and
@@ -27,11 +27,23 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Raw, String> {
             super::check_count(facets.len().max(polygons.len()))?;
         }
     }
+    if polygons.is_empty() && facets.is_empty() {
+        return Err(without_faces(&header));
+    }
     for corners in polygons {
         triangulate(&corners, &vertices, &mut facets);
         super::check_count(facets.len())?;
     }
     Ok((vertices, facets))
+}
+
+fn without_faces(header: &Header) -> String {
+    let others: Vec<&str> = header.elements.iter().map(|element| element.name.as_str()).collect();
+    if others.contains(&"range_grid") {
+        return "it holds a range grid and no faces; export it as a triangle mesh".into();
+    }
+    "it holds points and no faces, a cloud; make a closed surface of it first, as by Poisson reconstruction"
+        .into()
 }
 
 #[derive(Clone, Copy)]
@@ -76,10 +88,11 @@ impl Header {
     fn parse(bytes: &[u8]) -> Result<(Self, &[u8]), String> {
         let (mut encoding, mut elements, mut rest) = (None, Vec::<Element>::new(), bytes);
         let mut number = 0;
+        let line_end = line_end(bytes);
         loop {
             let end = rest
                 .iter()
-                .position(|&b| b == b'\n')
+                .position(|&b| b == line_end)
                 .ok_or("the header has no `end_header`; is it truncated?")?;
             let line = String::from_utf8_lossy(&rest[..end]);
             rest = &rest[end + 1..];
@@ -106,6 +119,14 @@ impl Header {
         }
         let encoding = encoding.ok_or("the header has no `format` line")?;
         Ok((Self { encoding, elements }, rest))
+    }
+}
+
+/// What ends the lines of the header: a CR alone where no LF follows the first one.
+fn line_end(bytes: &[u8]) -> u8 {
+    match bytes.iter().position(|&byte| byte == b'\r' || byte == b'\n') {
+        Some(end) if bytes[end] == b'\r' && bytes.get(end + 1) != Some(&b'\n') => b'\r',
+        _ => b'\n',
     }
 }
 
@@ -154,7 +175,7 @@ impl Kind {
                 let end = body.iter().position(u8::is_ascii_whitespace).unwrap_or(body.len());
                 let (word, rest) = body.split_at(end);
                 *body = rest;
-                str::from_utf8(word).ok()?.parse().ok()
+                text::number(str::from_utf8(word).ok()?)
             }
             Encoding::Little => self.read_binary(body, false),
             Encoding::Big => self.read_binary(body, true),
@@ -225,15 +246,13 @@ impl Row {
     }
 
     fn corners(&self, row: usize, count: usize) -> Result<Vec<u32>, String> {
-        if self.corners.len() < 3 {
-            return Err(format!("face {row} has fewer than 3 corners in `vertex_indices`"));
-        }
         let corner = |&index: &f64| {
             let known = (0.0..count as f64).contains(&index);
             known.then_some(index as u32).ok_or_else(|| format!("face {row} names vertex {index} of {count}"))
         };
         self.corners.iter().map(corner).collect()
     }
+
     /// The triangles of strips, which end at an index of -1.
     fn strips(&self, row: usize, count: usize, facets: &mut Vec<[u32; 3]>) -> Result<(), String> {
         for strip in self.corners.split(|&index| index == -1.0) {

@@ -11,8 +11,11 @@ const TOO_MANY: usize = 2000;
 ///
 /// Seen along the polygon's mean normal, an ear is a convex corner whose triangle holds no other corner
 /// (Meisters, "Polygons have ears", Am. Math. Monthly 1975). A polygon that has no ear left (it crosses
-/// itself) or too many corners is cut as a fan.
+/// itself) or too many corners is cut as a fan. One of fewer than three corners has no area and no triangle.
 pub(super) fn triangulate(corners: &[u32], vertices: &[Vec3], facets: &mut Vec<[u32; 3]>) {
+    if corners.len() < 3 {
+        return;
+    }
     let at = |index: u32| vertices.get(index as usize).copied().unwrap_or_default();
     let mut rest = corners.to_vec();
     let normal = mean_normal(&rest, at);

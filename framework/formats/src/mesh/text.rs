@@ -43,15 +43,36 @@ pub(super) fn point<'a>(words: &mut impl Iterator<Item = &'a str>, line: usize) 
     let mut point = Vec3::zeros();
     for coordinate in point.iter_mut() {
         let word = words.next().ok_or_else(|| format!("line {line}: a vertex needs three coordinates"))?;
-        *coordinate = finite(word).ok_or_else(|| format!("line {line}: `{word}` is not a finite number"))?;
+        *coordinate = finite(word).ok_or_else(|| not_finite(word, line))?;
     }
     Ok(point)
 }
 
+fn not_finite(word: &str, line: usize) -> String {
+    let hint = if word.contains(',') { "; numbers need blanks between them" } else { "" };
+    format!("line {line}: `{word}` is not a finite number{hint}")
+}
+
 fn finite(word: &str) -> Option<f64> {
-    let number = word.parse().ok().or_else(|| {
-        // Programs in Fortran write the exponent with a D.
-        word.contains(['d', 'D']).then(|| word.replace(['d', 'D'], "e").parse().ok()).flatten()
-    });
-    number.filter(|x: &f64| x.is_finite())
+    number(word).filter(|x| x.is_finite())
+}
+
+/// A number as programs write it: with a D before the exponent (Fortran), a comma for the decimal point
+/// (some languages) or after it (lists).
+pub(super) fn number(word: &str) -> Option<f64> {
+    let read = |word: &str| word.parse::<f64>().ok();
+    let odd = || {
+        let word = word.trim_end_matches([',', ';']).replace(['d', 'D'], "e");
+        let is_decimal = word.matches(',').count() == 1 && !word.contains('.');
+        read(&if is_decimal { word.replace(',', ".") } else { word })
+    };
+    // The words that are no figures ("infinity") hold a D or none that matters.
+    read(word).or_else(|| if word.starts_with(char::is_alphabetic) { None } else { odd() })
+}
+
+/// The text without what some programs write behind its end: blanks, zeros, the end-of-file mark of DOS.
+pub(super) fn trimmed(bytes: &[u8]) -> &[u8] {
+    let is_end = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0 || *byte == 0x1a;
+    let length = bytes.iter().rposition(|byte| !is_end(byte)).map_or(0, |last| last + 1);
+    &bytes[..length]
 }

@@ -4,6 +4,9 @@ use super::Raw;
 use regrasp_api::Vec3;
 use std::collections::HashMap;
 
+/// Vertices nearer than this, as part of the mesh's size, are one if that closes the mesh.
+pub(super) const NEARLY_EQUAL: f64 = 1e-5;
+
 /// One vertex for each place, in the order of first use; vertices that no facet uses are dropped.
 ///
 /// STL has no shared vertices at all, and exporters of other formats double them along seams. Only exactly

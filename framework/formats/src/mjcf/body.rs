@@ -37,7 +37,8 @@ pub(super) fn inside(
             }
             "joint" | "freejoint" => {}
             "inertial" => {
-                link.mass = child.own("mass").and_then(|mass| mass.parse().ok());
+                let mass = child.own("mass").map(|text| child.numbers_of("mass", text)).transpose()?;
+                link.mass = mass.and_then(|numbers| numbers.first().copied());
             }
             name if IDLE.contains(&name) => reader.idle(child),
             "replicate" | "composite" | "flexcomp" | "attach" => {

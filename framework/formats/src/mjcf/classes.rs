@@ -72,11 +72,7 @@ impl Styled<'_> {
     /// The numbers of an attribute, all finite; `None` where it is absent.
     pub fn list(&self, name: &str) -> Result<Option<Vec<f64>>, Fault> {
         let Some(text) = self.text(name) else { return Ok(None) };
-        let read = text.split_whitespace().map(|word| word.parse::<f64>().ok().filter(|x| x.is_finite()));
-        let numbers: Option<Vec<f64>> = read.collect();
-        numbers.map(Some).ok_or_else(|| {
-            self.tag.fault(format!("<{} {name}=\"{text}\">: it must be finite numbers", self.tag.name))
-        })
+        self.tag.numbers_of(name, text).map(Some)
     }
 
     /// Exactly `N` numbers.

@@ -126,10 +126,14 @@ pub(super) fn efforts(
 ) -> Result<BTreeMap<String, f64>, Fault> {
     let tendons = tendons(root)?;
     let mut efforts: BTreeMap<String, f64> = BTreeMap::new();
+    let mut aiming = Vec::new();
     for tag in root.all("actuator").flat_map(|actuator| &actuator.children) {
         let styled = reader.classes.of(tag, None)?;
-        let Some(force) = force(&styled, reader)? else { continue };
+        let Some((force, by_aim)) = force(&styled, reader)? else { continue };
         let joint = tag.own("joint").or(tag.own("jointinparent"));
+        if by_aim {
+            aiming.extend(joint.map(|joint| format!("`{joint}`")));
+        }
         if let Some(joint) = joint {
             *efforts.entry(joint.to_owned()).or_default() += force;
         } else if let Some(tendon) = tag.own("tendon") {
@@ -137,6 +141,14 @@ pub(super) fn efforts(
                 *efforts.entry(joint.clone()).or_default() += force * coefficient.abs();
             }
         }
+    }
+    if let Some(first) = aiming.first() {
+        let count = aiming.len();
+        remarks.push(format!(
+            "the motor of joint {first}{} has no `forcerange`: its gain times its range is taken as its effort; \
+             `--effort '*=…'` sets it (`joint` under `[hand]`)",
+            if count > 1 { format!(" and of {} more", count - 1) } else { String::new() }
+        ));
     }
     for (name, joints) in tendons.iter().filter(|(_, joints)| joints.len() > 1) {
         let names: Vec<String> = joints.iter().map(|(joint, _)| format!("`{joint}`")).collect();
@@ -154,23 +166,44 @@ fn tendons(root: &Tag) -> Result<BTreeMap<String, Vec<(String, f64)>>, Fault> {
     let mut tendons = BTreeMap::new();
     for tag in root.all("tendon").flat_map(|tendon| tendon.all("fixed")) {
         let joints = tag.all("joint").map(|joint| {
-            let coefficient = joint.own("coef").and_then(|text| text.parse().ok()).unwrap_or(1.0);
-            (joint.own("joint").unwrap_or_default().to_owned(), coefficient)
+            let given = joint.own("coef").map(|text| joint.numbers_of("coef", text)).transpose()?;
+            let coefficient = given.and_then(|numbers| numbers.first().copied()).unwrap_or(1.0);
+            Ok((joint.own("joint").unwrap_or_default().to_owned(), coefficient))
         });
-        tendons.insert(tag.own("name").unwrap_or_default().to_owned(), joints.collect());
+        let joints = joints.collect::<Result<_, Fault>>()?;
+        tendons.insert(tag.own("name").unwrap_or_default().to_owned(), joints);
     }
     Ok(tendons)
 }
 
-/// The largest effort that an actuator puts on its joint (N·m; N); `None` where the file does not say.
-fn force(styled: &Styled<'_>, reader: &Reader<'_>) -> Result<Option<f64>, Fault> {
+/// The largest effort that an actuator puts on its joint (N·m; N), and whether it is bounded by its aim alone;
+/// `None` where the file does not say.
+fn force(styled: &Styled<'_>, reader: &Reader<'_>) -> Result<Option<(f64, bool)>, Fault> {
     let gear = styled.list("gear")?.and_then(|gear| gear.first().copied()).unwrap_or(1.0).abs();
     let most = |[low, high]: [f64; 2]| low.abs().max(high.abs()) * gear;
     let force = styled.numbers::<2>("forcerange")?;
     if let Some(range) = force.filter(|_| is_limited(styled, "forcelimited", "forcerange", reader)) {
-        return Ok(Some(most(range)));
+        return Ok(Some((most(range), false)));
     }
-    // A motor's control is its force.
-    let control = styled.numbers::<2>("ctrlrange")?.filter(|_| styled.tag.name == "motor");
-    Ok(control.filter(|_| is_limited(styled, "ctrllimited", "ctrlrange", reader)).map(most))
+    let control = styled.numbers::<2>("ctrlrange")?;
+    let Some(control) = control.filter(|_| is_limited(styled, "ctrllimited", "ctrlrange", reader)) else {
+        return Ok(None);
+    };
+    // A motor's control is its force; one that aims at a position pulls with what it is away times its gain,
+    // at most the whole range.
+    Ok(match styled.tag.name.as_str() {
+        "motor" => Some((most(control), false)),
+        _ => gain(styled)?.map(|gain| (gain.abs() * (control[1] - control[0]).abs() * gear, true)),
+    })
+}
+
+/// The gain (N·m/rad; N/m) of an actuator that aims at a position.
+fn gain(styled: &Styled<'_>) -> Result<Option<f64>, Fault> {
+    Ok(match styled.tag.name.as_str() {
+        "position" => Some(styled.number("kp")?.unwrap_or(1.0)),
+        "general" if styled.text("biastype") == Some("affine") => {
+            styled.list("gainprm")?.and_then(|gain| gain.first().copied())
+        }
+        _ => None,
+    })
 }

@@ -144,11 +144,13 @@ fn key_frames(root: &Tag, reader: &Reader<'_>) -> Result<Vec<KeyFrame>, Fault> {
     let keys = root.all("keyframe").flat_map(|frame| frame.all("key")).enumerate();
     let read = |(i, tag): (usize, &Tag)| {
         let Some(text) = tag.own("qpos") else { return Ok(None) };
-        let numbers: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
+        let numbers = tag.numbers_of("qpos", text)?;
         let all: usize = reader.coordinates.iter().map(|(_, count)| count).sum();
-        let numbers = numbers.filter(|numbers| numbers.len() == all).ok_or_else(|| {
-            tag.fault(format!("<key qpos>: it must be {all} numbers, one for each coordinate of the joints"))
-        })?;
+        if numbers.len() != all {
+            let message =
+                format!("<key qpos>: it must be {all} numbers, one for each coordinate of the joints");
+            return Err(tag.fault(message));
+        }
         let mut positions = BTreeMap::new();
         let mut at = 0;
         for (joint, count) in &reader.coordinates {

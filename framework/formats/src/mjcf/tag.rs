@@ -2,7 +2,7 @@
 
 use crate::decode::read_xml;
 use crate::error::RobotFault as Fault;
-use crate::xml::{line, parse};
+use crate::xml::{LARGEST, line, parse};
 use std::path::{Path, PathBuf};
 
 /// How deep files may include each other.
@@ -28,6 +28,17 @@ impl Tag {
     /// The children of this name.
     pub fn all<'t>(&'t self, name: &'static str) -> impl Iterator<Item = &'t Tag> + use<'t> {
         self.children.iter().filter(move |child| child.name == name)
+    }
+
+    /// The numbers that an attribute's text holds, all finite and of a size that a robot's have.
+    pub fn numbers_of(&self, name: &str, text: &str) -> Result<Vec<f64>, Fault> {
+        let known = |x: &f64| x.abs() <= LARGEST;
+        let read = text.split_whitespace().map(|word| word.parse::<f64>().ok().filter(known));
+        read.collect::<Option<_>>().ok_or_else(|| {
+            let most = LARGEST;
+            let tag = &self.name;
+            self.fault(format!("<{tag} {name}=\"{text}\">: it must be numbers in -{most:e}..={most:e}"))
+        })
     }
 
     pub fn fault(&self, message: impl Into<String>) -> Fault {

@@ -110,3 +110,31 @@ fn what_is_not_read_is_refused_or_listed_with_its_line() {
         <equality><joint joint1='j' joint2='k' polycoef='0 1 1'/></equality>";
     assert!(message(curve).contains("straight lines"));
 }
+
+#[test]
+fn numbers_that_no_robot_has_are_refused() {
+    for inside in [
+        "<body pos=\"1e160 0 0\"/>",
+        "<body euler=\"0 nan 0\"/>",
+        "<body><joint axis=\"0 0 1e160\"/></body>",
+        "<body><inertial mass=\"inf\"/></body>",
+        "<body><geom type=\"sphere\" size=\"1e160\"/><joint range=\"0 1e160\"/></body>",
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("hand.xml");
+        std::fs::write(&path, format!("<mujoco><worldbody>{inside}</worldbody></mujoco>")).unwrap();
+        let message = read_mjcf(&path).unwrap_err().message;
+        assert!(message.contains("-1e9..=1e9"), "{inside}: {message}");
+    }
+}
+
+#[test]
+fn motors_without_a_range_of_force_pull_with_their_gain_over_their_range() {
+    let text = "<worldbody><body name='b'><joint name='j' range='0 1'/><joint name='k' range='0 1' axis='1 0 0'/>\
+                </body></worldbody><actuator><position joint='j' kp='2' ctrlrange='-0.5 1'/>\
+                <general joint='k' biastype='affine' gainprm='3' ctrlrange='0 1' gear='2'/></actuator>";
+    let robot = read(text).unwrap();
+    let effort = |name: &str| joint(&robot, name).limit.unwrap().effort;
+    assert_eq!((effort("j"), effort("k")), (Some(3.0), Some(6.0)));
+    assert!(robot.remarks.iter().any(|remark| remark.contains("`j` and of 1 more has no `forcerange`")));
+}

@@ -6,6 +6,11 @@ use crate::robot::{Joint, Kind, Limit, Mimic, Soft};
 use crate::xml::{Element, child, line, number, numbers, text};
 use regrasp_api::Vec3;
 
+/// By what a driver's position is multiplied at most.
+const MULTIPLIER: f64 = 1e4;
+/// What is added at most (rad; m).
+const OFFSET: f64 = 1e3;
+
 pub(super) fn joint(element: &Element<'_>) -> Result<Joint, Fault> {
     let name = text(element, "name")?;
     let kind = kind(element, &name)?;
@@ -81,7 +86,18 @@ fn mimic(element: &Element<'_>) -> Result<Mimic, Fault> {
     Ok(Mimic {
         line: line(element),
         joint: text(element, "joint")?,
-        multiplier: number(element, "multiplier")?.unwrap_or(1.0),
-        offset: number(element, "offset")?.unwrap_or(0.0),
+        multiplier: within(element, "multiplier", MULTIPLIER, "")?.unwrap_or(1.0),
+        offset: within(element, "offset", OFFSET, "; angles are in radians, lengths in metres")?
+            .unwrap_or(0.0),
     })
+}
+
+fn within(element: &Element<'_>, name: &str, most: f64, hint: &str) -> Result<Option<f64>, Fault> {
+    match number(element, name)? {
+        Some(x) if x.abs() > most => {
+            let message = format!("<mimic {name}>: {x} is outside -{most}..={most}{hint}");
+            Err(Fault::at(line(element), message))
+        }
+        given => Ok(given),
+    }
 }

@@ -84,12 +84,9 @@ struct Lines {
 fn visit(element: &Element<'_>, lines: &mut Lines) -> Result<(), Fault> {
     let tag = element.tag_name().name();
     let known = KNOWN.iter().find(|known| known.name == tag).expect("only known elements are visited");
+    refuse_unfilled(element)?;
     for attribute in element.attributes() {
-        let (name, value) = (attribute.name(), attribute.value());
-        if attribute.namespace().is_some_and(|space| space.contains("xacro")) || is_macro_text(value) {
-            let message = format!("<{tag} {name}=\"{value}\">: what a macro should have filled in; {EXPAND}");
-            return Err(Fault::at(line(element), message));
-        }
+        let name = attribute.name();
         if known.attributes.contains(&name) {
             continue;
         }
@@ -107,7 +104,10 @@ fn visit(element: &Element<'_>, lines: &mut Lines) -> Result<(), Fault> {
             }
             continue;
         }
-        child.descendants().filter(|below| below.is_element()).try_for_each(|e| refuse_prefixed(&e, tag))?;
+        for below in child.descendants().filter(|below| below.is_element()) {
+            refuse_prefixed(&below, tag)?;
+            refuse_unfilled(&below)?;
+        }
         let what = format!("<{name}> in <{tag}>");
         lines.note(what, known.idle.contains(&name), nearest(name, known.elements), line(&child));
     }
@@ -131,6 +131,17 @@ fn nearest<'n>(name: &str, known: &[&'n str]) -> Option<&'n str> {
     let lower = name.to_ascii_lowercase();
     let apart = |other: &&str| strsim::damerau_levenshtein(&lower, other);
     known.iter().copied().min_by_key(apart).filter(|best| apart(best) <= 2 && best.len() > 2)
+}
+
+/// Refuses attributes that a macro should have filled in.
+fn refuse_unfilled(element: &Element<'_>) -> Result<(), Fault> {
+    let unfilled = element.attributes().find(|attribute| {
+        attribute.namespace().is_some_and(|space| space.contains("xacro")) || is_macro_text(attribute.value())
+    });
+    let Some(attribute) = unfilled else { return Ok(()) };
+    let (tag, name, value) = (element.tag_name().name(), attribute.name(), attribute.value());
+    let message = format!("<{tag} {name}=\"{value}\">: what a macro should have filled in; {EXPAND}");
+    Err(Fault::at(line(element), message))
 }
 
 fn is_macro_text(value: &str) -> bool {

@@ -96,3 +96,36 @@ fn shapes_keep_their_places_and_sizes() {
     let moved = solid.X_LS * nalgebra::Point3::new(1.0, 0.0, 0.0);
     assert!((moved - nalgebra::Point3::new(0.0, 1.0, 1.0)).norm() < 1e-12);
 }
+
+#[test]
+fn what_a_macro_should_have_filled_in_is_refused_at_any_depth() {
+    for text in [
+        "<link name=\"a\"><inertial><origin xyz=\"${x} 0 0\"/></inertial></link>",
+        "<link name=\"a\"><inertial><inertia ixx=\"$(arg i)\"/></inertial></link>",
+        "<link name=\"a\"><visual><material name=\"${m}\"/></visual></link>",
+        "<transmission><joint name=\"${j}\"/></transmission>",
+        "<link name=\"a\"><foo><bar baz=\"${q}\"/></foo></link>",
+    ] {
+        assert!(refusal(text).message.contains("should have filled in"), "{text}");
+    }
+}
+
+#[test]
+fn numbers_that_no_robot_has_are_refused_with_their_range() {
+    let joint = |inside: &str| {
+        format!("<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/>{inside}</joint>")
+    };
+    for (inside, range) in [
+        ("<limit lower=\"1e160\"/>", "<limit lower>: 1e160 is outside -1e9..=1e9"),
+        ("<axis xyz=\"0 -1e160 0\"/>", "<axis xyz>: -1e160 is outside"),
+        ("<origin rpy=\"0 1e5 0\"/>", "angles are in radians"),
+        (
+            "<mimic joint=\"k\" multiplier=\"1e8\"/>",
+            "<mimic multiplier>: 100000000 is outside -10000..=10000",
+        ),
+        ("<mimic joint=\"k\" offset=\"-1e8\"/>", "<mimic offset>: -100000000 is outside -1000..=1000"),
+    ] {
+        let message = refusal(&joint(inside)).message;
+        assert!(message.contains(range), "{inside}: {message}");
+    }
+}

@@ -86,7 +86,7 @@ struct Part {
 
 /// The mesh as one rigid object, or why it is none.
 ///
-/// Bodies that overlap are united. A body within another is part of it and left out; a surface that looks
+/// Bodies that overlap, or touch with their faces, are united. A body within another is part of it and left out; a surface that looks
 /// inward within a body is a hollow. Several bodies that do not touch pass as an `assembly` only. Cost: about
 /// 3 µs a facet.
 pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<Mesh, BodyFault> {
@@ -96,7 +96,7 @@ pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<Mesh, BodyFault> {
             let inward = [first, second].into_iter().find(|&body| parts[body - 1].volume < 0.0);
             return match inward {
                 Some(body) => Err(inside_out(&parts, body - 1)),
-                None => union::united(&mesh, &parts).filter(is_sound).ok_or(fault),
+                None => union::united(&mesh, &parts, is_sound).ok_or(fault),
             };
         }
         checked => checked?,
@@ -114,6 +114,9 @@ pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<Mesh, BodyFault> {
         }
     }
     if let (Some(&second), false) = (apart.get(1), assembly) {
+        if let Some(joined) = union::joined(&mesh, &parts, is_sound) {
+            return Ok(joined);
+        }
         let second = &parts[second];
         return Err(BodyFault::Apart {
             count: apart.len(),

@@ -98,3 +98,41 @@ fn bodies_that_cross_edge_upon_edge_or_touch_are_told_apart() {
     let upon = boxes(&[(Vec3::zeros(), 0.02, true), (Vec3::new(0.0, 0.0, 0.03), 0.01, true)]);
     assert!(!matches!(rigid_body(upon, true), Err(BodyFault::Crossing { .. } | BodyFault::Overlap { .. })));
 }
+
+/// A ball of radius 30 mm with a small one of 9 mm in its side, whose middle is `x` (m) away, and the volume
+/// that both have together.
+fn ball_with_knob(x: f64) -> (Mesh, f64) {
+    let ball = primitive_mesh(&Primitive::Sphere { radius: 0.03 }, 320).unwrap();
+    let knob = primitive_mesh(&Primitive::Sphere { radius: 0.009 }, 320).unwrap();
+    let moved = knob.vertices().iter().map(|v| v + Vec3::x() * x);
+    let vertices: Vec<Vec3> = ball.vertices().iter().copied().chain(moved).collect();
+    let first = ball.vertices().len() as u32;
+    let facets = knob.facets().iter().map(|f| f.map(|v| v + first));
+    let facets = ball.facets().iter().copied().chain(facets).collect();
+    let volume = ball.mass_properties().volume + knob.mass_properties().volume;
+    (Mesh::new(vertices, facets).unwrap(), volume)
+}
+
+#[test]
+fn bodies_whose_vertices_lie_in_common_planes_are_united() {
+    for x in [0.02, 0.025, 0.026, 0.027, 0.028, 0.03, 0.033, 0.036, 0.038] {
+        let (both, volume) = ball_with_knob(x);
+        let union = rigid_body(both, false).unwrap_or_else(|fault| panic!("{x}: {fault}"));
+        assert!(union.mass_properties().volume < volume && union.mass_properties().volume > 1.05e-4, "{x}");
+        assert_eq!(body_count(&union), 1);
+    }
+}
+
+#[test]
+fn bodies_that_touch_with_their_faces_are_one_piece() {
+    let beside = |offset: Vec3, half: f64| boxes(&[(at(0.0), 0.02, true), (offset, half, true)]);
+    let union = rigid_body(beside(Vec3::new(0.03, 0.001, 0.002), 0.01), false).unwrap();
+    let volume = 0.04f64.powi(3) + 0.02f64.powi(3);
+    assert!((union.mass_properties().volume / volume - 1.0).abs() < 1e-5);
+    assert_eq!(body_count(&union), 1);
+    // An edge and a corner hold nothing.
+    for offset in [Vec3::new(0.03, 0.03, 0.001), Vec3::repeat(0.03)] {
+        let fault = rigid_body(beside(offset, 0.01), false).unwrap_err();
+        assert!(matches!(fault, BodyFault::Apart { count: 2, .. }), "{fault}");
+    }
+}

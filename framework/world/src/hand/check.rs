@@ -12,8 +12,8 @@ const RADIUS: (f64, f64) = (1e-4, 0.2);
 const MAX_TURN: f64 = 4.0 * std::f64::consts::PI;
 /// Largest absolute limit of a prismatic joint (m).
 const MAX_TRAVEL: f64 = 10.0;
-/// Largest speed, acceleration and effort of a joint.
-const MAX_RATE: f64 = 1e9;
+/// Speed, acceleration and effort of a joint.
+const RATES: (f64, f64) = (1e-6, 1e6);
 const MILLIMETRES: &str = "; lengths are in metres";
 const DEGREES: &str = "; angles are in radians, lengths in metres";
 
@@ -85,7 +85,7 @@ fn check_joint(key: &str, joint: &JointDescription) -> Result<Pose, HandError> {
     let rates =
         [("velocity", joint.velocity), ("acceleration", joint.acceleration), ("effort", joint.effort)];
     for (name, value) in rates {
-        check_positive(&format!("{key}.{name}"), value, MAX_RATE)?;
+        check_range(&format!("{key}.{name}"), value, RATES, "; it must be positive")?;
     }
     check_shapes(&format!("{key}.link"), &joint.link)?;
     Ok(origin)
@@ -238,7 +238,6 @@ fn check_range(key: &str, value: f64, (low, high): (f64, f64), hint: &'static st
     Err(HandError::Range { key: key.into(), value, range: format!("{low}..={high}"), hint })
 }
 
-/// Refuses what is not in (0, most].
 fn check_positive(key: &str, value: f64, most: f64) -> Result<(), HandError> {
     if value > 0.0 && value <= most {
         return Ok(());

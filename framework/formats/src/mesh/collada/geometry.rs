@@ -156,11 +156,28 @@ fn positions(file: &File<'_>, source: Element<'_>) -> Result<Vec<Vec3>, String> 
     };
     let (stride, offset) = (given("stride", 3)?, given("offset", 0)?);
     let all = numbers::<f64>(array)?;
-    if stride < 3 || offset > all.len() {
+    let places = accessor.map_or(Ok([0, 1, 2]), axes)?;
+    if stride <= *places.iter().max().unwrap_or(&2) || offset > all.len() {
         return Err(format!("{}: points need three numbers each", place(source)));
     }
     Ok(all[offset..]
         .chunks(stride)
-        .filter_map(|p| Some(Vec3::new(*p.first()?, *p.get(1)?, *p.get(2)?)))
+        .filter_map(|p| Some(Vec3::new(*p.get(places[0])?, *p.get(places[1])?, *p.get(places[2])?)))
         .collect())
+}
+
+/// Where x, y and z stand among the numbers of a point: as its parameters are called, those without a name
+/// being left out.
+fn axes(accessor: Element<'_>) -> Result<[usize; 3], String> {
+    let named: Vec<(usize, &str)> = children(accessor, "param")
+        .enumerate()
+        .filter_map(|(i, param)| Some((i, param.attribute("name")?)))
+        .collect();
+    let place_of = |axis: &str| named.iter().find(|(_, name)| name.eq_ignore_ascii_case(axis)).map(|p| p.0);
+    match (place_of("x"), place_of("y"), place_of("z"), &named[..]) {
+        (Some(x), Some(y), Some(z), _) => Ok([x, y, z]),
+        (.., []) => Ok([0, 1, 2]),
+        (.., [a, b, c, ..]) => Ok([a.0, b.0, c.0]),
+        _ => Err(format!("{}: points need three parameters with names", place(accessor))),
+    }
 }

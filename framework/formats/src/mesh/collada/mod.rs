@@ -9,6 +9,7 @@ mod geometry;
 mod scene;
 
 use super::Raw;
+use crate::decode::decode;
 use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::BTreeMap;
 
@@ -19,8 +20,8 @@ const MAX_ELEMENTS: u32 = 10_000_000;
 
 /// The whole scene, or where there is none every geometry as it is.
 pub(super) fn parse(bytes: &[u8]) -> Result<Raw, String> {
-    let text = std::str::from_utf8(bytes).map_err(|_| "it is not UTF-8 text, which COLLADA should be")?;
-    let options = ParsingOptions { nodes_limit: MAX_ELEMENTS, ..ParsingOptions::default() };
+    let text = decode(bytes).map_err(|fault| fault.message)?;
+    let options = ParsingOptions { nodes_limit: MAX_ELEMENTS, allow_dtd: true, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text.trim_start_matches('\u{feff}'), options)
         .map_err(|error| format!("not well-formed XML: {error}"))?;
     let root = document.root_element();
