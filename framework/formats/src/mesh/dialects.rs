@@ -142,7 +142,7 @@ fn obj_has_its_faces_anywhere_and_its_words_in_any_case() {
         assert!((mesh.mass_properties().volume - 8e-6 / 6.0).abs() < 1e-15, "{file}");
     }
     let message = load("part.obj", vertices).unwrap_err().to_string();
-    assert!(message.contains("no faces"), "{message}");
+    assert!(message.contains("no facets"), "{message}");
 }
 
 #[test]

@@ -40,8 +40,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Raw, String> {
     }
     if faces.is_empty() {
         return Err(match vertices.len() {
-            0 => "it holds neither vertices nor faces".into(),
-            _ => "it holds vertices and no faces; export it as a triangle mesh".into(),
+            0 => "it has no facets and no vertices".into(),
+            _ => "it has vertices and no facets; export it as a triangle mesh".into(),
         });
     }
     let mut facets = Vec::with_capacity(faces.len());

@@ -214,7 +214,7 @@ fn damaged_files_are_refused_with_the_reason() {
         ("f.stl", not_finite, "facet 0 has a coordinate that is not finite"),
         ("g.stl", many, "announces 3000000 facets, the file holds 12"),
         ("h.stl", b"solid empty\nendsolid empty\n".to_vec(), "no facets"),
-        ("i.obj", b"".to_vec(), "neither vertices nor faces"),
+        ("i.obj", b"".to_vec(), "no facets and no vertices"),
         ("j.obj", b"v 0 0 0\nv 1 0 nan\n".to_vec(), "line 2: `nan`"),
         ("k.obj", b"v 0 0 0\nv 1 0 0\nf 1 2\n".to_vec(), "the mesh has no facets"),
         ("l.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 3\n".to_vec(), "`3` names no vertex of the 2"),
