@@ -122,17 +122,3 @@ fn bodies_whose_vertices_lie_in_common_planes_are_united() {
         assert_eq!(body_count(&union), 1);
     }
 }
-
-#[test]
-fn bodies_that_touch_with_their_faces_are_one_piece() {
-    let beside = |offset: Vec3, half: f64| boxes(&[(at(0.0), 0.02, true), (offset, half, true)]);
-    let union = rigid_body(beside(Vec3::new(0.03, 0.001, 0.002), 0.01), false).unwrap();
-    let volume = 0.04f64.powi(3) + 0.02f64.powi(3);
-    assert!((union.mass_properties().volume / volume - 1.0).abs() < 1e-5);
-    assert_eq!(body_count(&union), 1);
-    // An edge and a corner hold nothing.
-    for offset in [Vec3::new(0.03, 0.03, 0.001), Vec3::repeat(0.03)] {
-        let fault = rigid_body(beside(offset, 0.01), false).unwrap_err();
-        assert!(matches!(fault, BodyFault::Apart { count: 2, .. }), "{fault}");
-    }
-}

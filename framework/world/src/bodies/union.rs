@@ -11,55 +11,18 @@ const MANY: usize = 64;
 /// How bodies are changed, in parts of the mesh's size, before they are united: where faces and edges meet by
 /// accident in one plane or line, moving a body by less than anybody measures makes the union possible.
 const SHIFTS: [f64; 4] = [0.0, 1e-9, 3e-8, 1e-6];
-/// By how much bodies that only touch grow about their middles, in parts of the mesh's size.
-const GROWTH: f64 = 1e-6;
-/// Bodies touch that share at least this part of the square of the mesh's size.
-const TOUCHING: f64 = 1e-4;
-
 /// The union of bodies whose facets all look outward, and that `is_sound`; `None` where it cannot be made.
 ///
 /// M. Smith, "Towards robust inexact geometric computation", PhD thesis, Cambridge 2009, as in the library
 /// Manifold.
 pub(super) fn united(mesh: &Mesh, parts: &[Part], is_sound: impl Fn(&Mesh) -> bool) -> Option<Mesh> {
     let size = mesh.radius();
-    let made = |part: &f64| union(mesh, parts, part * size, 0.0).filter(&is_sound);
+    let made = |part: &f64| union(mesh, parts, part * size).filter(&is_sound);
     SHIFTS.iter().find_map(made)
 }
 
-/// The same for bodies of which some touch without overlapping; `None` where faces do not meet.
-pub(super) fn joined(mesh: &Mesh, parts: &[Part], is_sound: impl Fn(&Mesh) -> bool) -> Option<Mesh> {
-    let size = mesh.radius();
-    let growth = GROWTH * size;
-    let grown = |part: &f64| union(mesh, parts, part * size, growth).filter(&is_sound);
-    let joined = SHIFTS[..3].iter().find_map(grown)?;
-    let before: f64 = parts.iter().map(|part| grown_volume(mesh, part, growth)).sum();
-    let shared = (before - joined.mass_properties().volume) / (2.0 * growth);
-    (shared > TOUCHING * size * size).then_some(joined)
-}
-
-/// The volume (m³) of a body that has grown: its surface's distance times its area more, nearly.
-fn grown_volume(mesh: &Mesh, part: &Part, growth: f64) -> f64 {
-    let volume = |[a, b, c]: [Vec3; 3]| a.dot(&b.cross(&c)) / 6.0;
-    let moved =
-        |facet: &u32| mesh.corners(*facet).map(|p| part.moved(&p, growth, &Vec3::zeros()) - part.middle());
-    part.facets.iter().map(moved).map(volume).sum()
-}
-
-impl Part {
-    fn middle(&self) -> Vec3 {
-        (self.lower + self.upper) / 2.0
-    }
-
-    /// A point of the body that has grown so far (m) about its middle, and was moved.
-    fn moved(&self, p: &Vec3, growth: f64, shift: &Vec3) -> Vec3 {
-        let half = (self.upper - self.lower) / 2.0;
-        let away = p - self.middle();
-        away.zip_map(&half, |x, half| x * (1.0 + growth / half.max(growth))) + self.middle() + shift
-    }
-}
-
 /// The union of bodies of which each is moved by a little (m) from the one before.
-fn union(mesh: &Mesh, parts: &[Part], shift: f64, growth: f64) -> Option<Mesh> {
+fn union(mesh: &Mesh, parts: &[Part], shift: f64) -> Option<Mesh> {
     if parts.len() > MANY || parts.iter().any(|part| part.volume <= 0.0) {
         return None;
     }
@@ -68,7 +31,7 @@ fn union(mesh: &Mesh, parts: &[Part], shift: f64, growth: f64) -> Option<Mesh> {
     // The library may panic on input that is worse than it looks; such bodies are then refused.
     catch_unwind(|| {
         let bodies = parts.iter().enumerate();
-        let mut rest = bodies.map(|(i, part)| manifold(mesh, part, growth, &(step * i as f64)));
+        let mut rest = bodies.map(|(i, part)| manifold(mesh, part, &(step * i as f64)));
         let first = rest.next()??;
         let all = rest.try_fold(first, |all, next| compute_boolean(&all, &next?, OpType::Add).ok())?;
         ordered(&all)
@@ -77,12 +40,12 @@ fn union(mesh: &Mesh, parts: &[Part], shift: f64, growth: f64) -> Option<Mesh> {
     .flatten()
 }
 
-fn manifold(mesh: &Mesh, part: &Part, growth: f64, shift: &Vec3) -> Option<Manifold> {
+fn manifold(mesh: &Mesh, part: &Part, shift: &Vec3) -> Option<Manifold> {
     let corners = part.facets.iter().flat_map(|&facet| mesh.facets()[facet as usize]);
     let mut used: Vec<u32> = corners.clone().collect();
     used.sort_unstable();
     used.dedup();
-    let placed = |&v: &u32| <[f64; 3]>::from(part.moved(&mesh.vertices()[v as usize], growth, shift));
+    let placed = |&v: &u32| <[f64; 3]>::from(mesh.vertices()[v as usize] + shift);
     let points: Vec<f64> = used.iter().flat_map(placed).collect();
     let indices: Vec<usize> = corners.map(|v| used.binary_search(&v).unwrap_or(0)).collect();
     Manifold::new(&points, &indices).ok()
