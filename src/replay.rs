@@ -9,8 +9,9 @@ use std::path::PathBuf;
 The object is free, under the gravity that the plan's scenario gives (0, 0, -9.81 m/s² in the hand's frame \
 where it gave none), and held by friction alone. Each joint is \
 driven by a motor with a stiffness, a damping and the joint's effort limit; it follows the plan, and what \
-the grasp needs is fed forward: in every state the \
-forces that need the least share of the friction within the efforts. Nothing looks at where the object is. \
+the grasp needs is fed forward: the plan's own \
+forces, or, where it brings none and with `--grip` or `--gravity`, those that need the least share of the \
+friction within the efforts. Nothing looks at where the object is. \
 Between two segments the forces pass over to the fingers that hold next.\n\n\
 Reported for each segment: the largest deviation of the object from the plan, the largest slip of a \
 fingertip, where the object is at the segment's end, and what went wrong. The object has \
@@ -50,8 +51,7 @@ pub struct ReplayArgs {
     /// balance the weight alone.
     #[arg(long, value_name = "X", allow_negative_numbers = true, default_value_t = 2.0, value_parser = number::<0, 100>)]
     pub slowdown: f64,
-    /// Most normal force of one contact (N); by default what the plan claims to hold by, or else what the
-    /// joints can.
+    /// Most normal force of one contact (N), in place of the plan's own forces.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = number::<0, 10_000>)]
     pub grip: Option<f64>,
     /// Replay in many worlds instead of one, friction, mass, stiffness and slowdown other than planned, and
@@ -61,6 +61,14 @@ pub struct ReplayArgs {
     /// Gravity in the hand's frame (m/s²), such as 0,0,9.81; by default the scenario's.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     pub gravity: Option<[f64; 3]>,
+}
+
+impl ReplayArgs {
+    /// Whether the plan's own forces do: another grip or gravity asks for others.
+    #[cfg(feature = "rapier")]
+    fn keeps_forces(&self) -> bool {
+        self.grip.is_none() && self.gravity.is_none()
+    }
 }
 
 /// A finite number in `LOW..=HIGH`; the simulation has narrower ranges for some.

@@ -38,7 +38,12 @@ fn stages(motion: &Motion) -> Vec<Stage<'_>> {
     };
     let segments = motion.segments.iter();
     segments
-        .map(|segment| Stage { states: &segment.states, times: &segment.times, moving: moving(segment.kind) })
+        .map(|segment| Stage {
+            states: &segment.states,
+            times: &segment.times,
+            moving: moving(segment.kind),
+            forces: &segment.forces,
+        })
         .collect()
 }
 

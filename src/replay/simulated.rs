@@ -9,7 +9,7 @@ use regrasp::physics::{
     Happening, Moment, PhysicsError, ReplayReport, ReplaySettings, SimulationSettings, Stage, StageReport,
     replay,
 };
-use regrasp::plan::{Claims, Criterion, Motion, Plan, SegmentKind};
+use regrasp::plan::{Claims, Criterion, Motion, Plan, Segment, SegmentKind};
 use serde_json::{Value, json};
 
 /// Slip of a contact (m) and gap between a holding fingertip and the object (m) that are worth a word.
@@ -57,7 +57,7 @@ impl<'a> Told<'a> {
         problem.gravity = args.gravity.unwrap_or(problem.gravity);
         let settings = settings(args, &problem, &plan.claims);
         // A plan's meshes are given in place: there is no file to look for.
-        let report = replay(&problem, &stages(&motion), &settings);
+        let report = replay(&problem, &stages(&motion, args.keeps_forces()), &settings);
         let report =
             report.map_err(|error| Failure::bad_input(format!("{}: {error}", args.plan.display())))?;
         Ok(Self { args, plan, motion, problem, settings, report })
@@ -201,6 +201,15 @@ impl<'a> Told<'a> {
         })
     }
 
+    /// Whether all forces are the plan's own.
+    fn brings_forces(&self) -> bool {
+        let segments = &self.motion.segments;
+        self.args.keeps_forces()
+            && segments
+                .iter()
+                .all(|s| s.forces.len() == s.states.len() && s.forces.iter().all(Option::is_some))
+    }
+
     fn assumed(&self) -> Value {
         let SimulationSettings { stiffness, linear_stiffness, damping_time, time_step, effort_share, .. } =
             self.settings.simulation;
@@ -212,6 +221,7 @@ impl<'a> Told<'a> {
             "planned_friction": object.friction,
             "planned_mass_kg": object.mass,
             "grip_n": self.settings.simulation.grip,
+            "forces_of_plan": self.brings_forces(),
             "stiffness_nm_rad": stiffness,
             "linear_stiffness_n_m": linear_stiffness,
             "damping_time_s": damping_time,
@@ -285,13 +295,16 @@ fn settings(args: &ReplayArgs, problem: &Problem, claims: &Claims) -> ReplaySett
     ReplaySettings { simulation, slowdown: args.slowdown, ..Default::default() }
 }
 
-fn stages(motion: &Motion) -> Vec<Stage<'_>> {
-    let moving = |kind| match kind {
+/// The motion's segments, with the forces that the plan brings where they are `wanted`.
+fn stages(motion: &Motion, wanted: bool) -> Vec<Stage<'_>> {
+    motion.segments.iter().map(|segment| stage(segment, wanted)).collect()
+}
+
+fn stage(segment: &Segment, wanted: bool) -> Stage<'_> {
+    let moving = match segment.kind {
         SegmentKind::Transfer => None,
         SegmentKind::Regrasp(finger) => Some(finger),
     };
-    let segments = motion.segments.iter();
-    segments
-        .map(|segment| Stage { states: &segment.states, times: &segment.times, moving: moving(segment.kind) })
-        .collect()
+    let forces = if wanted { &segment.forces[..] } else { &[] };
+    Stage { states: &segment.states, times: &segment.times, moving, forces }
 }

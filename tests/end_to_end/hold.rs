@@ -30,6 +30,97 @@ fn what_contradicts_itself_is_refused() {
         &["`hold.disturbance`", "cannot do what it asks for", "holding"],
     );
     refused("[hold]\nfriction_factr = 0.6", &["did you mean `friction_factor`?"]);
+    refused(
+        "[hold]\n\n[plugins.stability-test]\nuse = \"holding\"\ndisturbance_force = 0.2",
+        &["`plugins.stability-test.disturbance_force` and `hold.disturbance` both", "leave the former out"],
+    );
+}
+
+#[test]
+fn a_test_chosen_on_the_command_line_must_do_what_is_asked_for() {
+    let desk = Desk::new();
+    desk.write("mine.toml", sphere("[hold]\ndisturbance = [0.1, 0.0]"));
+    desk.run("plan mine.toml --use stability-test=equilibrium").assert_fails(
+        2,
+        &["`hold.disturbance`: `stability-test/equilibrium` cannot do what it asks for", "holding"],
+    );
+}
+
+#[test]
+fn efforts_that_a_hand_does_not_give_are_asked_for() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenarios/hands/four-finger.toml");
+    let hand = std::fs::read_to_string(folder).expect("a built-in hand");
+    let first = hand.find("effort = ").expect("its joints have efforts");
+    let silent = hand[first..].replacen("effort = ", "# effort = ", 1);
+    let desk = Desk::new();
+    desk.write("hand.toml", format!("{}{silent}", &hand[..first]));
+    let with_hand = |text: String| text.replace("builtin = \"four-finger\"", "file = \"hand.toml\"");
+    desk.write("mine.toml", with_hand(sphere("[hold]")));
+    let said = desk.run("plan mine.toml");
+    said.assert_fails(2, &["finger[0].joint[0].effort", "write its `effort` (N·m)", "--effort"]);
+    // Without `[hold]` nobody relies on efforts.
+    desk.write("mine.toml", with_hand(sphere("")));
+    assert_eq!(desk.run("plan mine.toml --seed 1").code, 0);
+}
+
+#[test]
+fn an_object_too_heavy_for_every_grasp_is_said_before_the_search_with_what_they_carry() {
+    let desk = Desk::new();
+    let heavy = |mass: f64| sphere("[hold]").replace("mass = 0.1", &format!("mass = {mass}"));
+    desk.write("mine.toml", heavy(80.0));
+    let said = desk.run("plan mine.toml --seed 1");
+    said.assert_fails(2, &["`object.mass` = 80", "the largest mass found is", "key `object.mass`"]);
+    let (_, rest) = said.err.split_once("the largest mass found is ").expect("just seen");
+    let most: f64 = rest.split_whitespace().next().and_then(|word| word.parse().ok()).expect("a number");
+    assert!((0.2..20.0).contains(&most), "{most}");
+    // A little less than that is a matter for the search.
+    desk.write("mine.toml", heavy(0.9 * most));
+    let said = desk.run("plan mine.toml --seed 1 --max-nodes 1");
+    assert!(!said.err.contains("the largest mass found"), "{}", said.err);
+}
+
+#[cfg(feature = "rapier")]
+#[test]
+fn replays_use_the_forces_of_the_plan_and_hold_arrivals_against_its_promises() {
+    let desk = Desk::new();
+    desk.write("mine.toml", sphere("[hold]\nfriction_factor = 0.6"));
+    assert_eq!(desk.run("plan mine.toml --seed 1 -o plan.json").code, 0);
+    let own = desk.run("replay plan.json --json").json();
+    assert_eq!(
+        (own["arrived"].as_bool(), own["assumed"]["forces_of_plan"].as_bool()),
+        (Some(true), Some(true))
+    );
+    let chosen = desk.run("replay plan.json --json --grip 3").json();
+    assert_eq!(chosen["assumed"]["forces_of_plan"], false);
+    let plan: Value = serde_json::from_str(&desk.read("plan.json")).expect("it is JSON");
+    // Fingers that pull drop it.
+    let mut weak = plan.clone();
+    for state in weak["segments"].as_array_mut().expect("segments").iter_mut().flat_map(states) {
+        let forces = state["forces"].as_array_mut().expect("forces").iter_mut();
+        for x in forces.filter_map(Value::as_array_mut).flatten() {
+            *x = (-x.as_f64().expect("a number")).into();
+        }
+    }
+    desk.write("weak.json", weak.to_string());
+    desk.run("replay weak.json").assert_fails(4, &["does not arrive"]);
+    // A promise that is true, and one that is not.
+    let said = desk.run("replay plan.json --sweep --json");
+    let told = said.json();
+    let worlds = told["worlds"].as_array().expect("worlds");
+    assert_eq!((said.code, told["broken"].as_u64(), worlds.len()), (0, Some(0), 32));
+    let promised = worlds.iter().filter(|world| world["promised"] == true).count();
+    assert!((4..32).contains(&promised), "{promised}");
+    let mut boast = plan;
+    boast["certificate"]["holds"]["mass"]["value"] = 1e3.into();
+    boast["certificate"]["holds"]["friction"]["value"] = 0.01.into();
+    boast["scenario"]["problem"]["object"]["mass"] = 4.0.into();
+    desk.write("boast.json", boast.to_string());
+    desk.run("replay boast.json --sweep").assert_fails(4, &["break what the plan promises"]);
+}
+
+#[cfg(feature = "rapier")]
+fn states(segment: &mut Value) -> &mut Vec<Value> {
+    segment["states"].as_array_mut().expect("states")
 }
 
 #[test]

@@ -17,8 +17,8 @@ pub(crate) struct Forces {
 }
 
 impl Forces {
-    /// Forces that hold the object against gravity with the least share of the friction that the plan claims
-    /// within the joints' efforts; `grip` is the most normal force of a contact (N), what the plan claims
+    /// The plan's own forces; where it brings none, or a `grip` is given, those that hold the object against
+    /// gravity with the least share of the friction within the joints' efforts. `grip` is the most normal force of a contact (N), what the plan claims
     /// where `None`.
     pub fn new(
         plan: &Plan,
@@ -34,6 +34,8 @@ impl Forces {
             let count = motion.segments.iter().map(|segment| segment.states.len()).sum();
             return Ok(Self { held: vec![None; count], missing: Some(missing), settings });
         };
+        // Another grip than the plan's asks for other forces.
+        let stage = |segment| stage(segment, grip.is_none());
         let stages: Vec<Stage<'_>> = motion.segments.iter().map(stage).collect();
         let g_H = Vec3::from(plan.scenario.problem.gravity);
         let friction = Friction { mu: cone.mu, gamma: cone.gamma };
@@ -102,10 +104,12 @@ fn settings(plan: &Plan, grip: Option<f64>) -> SimulationSettings {
     settings
 }
 
-fn stage(segment: &Segment) -> Stage<'_> {
+/// The segment, with the forces that the plan brings where they are `wanted`.
+fn stage(segment: &Segment, wanted: bool) -> Stage<'_> {
     let moving = match segment.kind {
         SegmentKind::Transfer => None,
         SegmentKind::Regrasp(finger) => Some(finger),
     };
-    Stage { states: &segment.states, times: &segment.times, moving }
+    let forces = if wanted { &segment.forces[..] } else { &[] };
+    Stage { states: &segment.states, times: &segment.times, moving, forces }
 }

@@ -3,6 +3,7 @@
 use crate::force::{ContactForce, Friction};
 use crate::holding::{Balanced, Bearing, Forces, Press, Search, Smallest, share_of, smallest_share, stacked};
 use crate::settings::SimulationSettings;
+use crate::stage::Stage;
 use nalgebra::Vector6;
 use regrasp_api::{
     Configuration, EffortBounds, FingerIndex, FingerJoints, FingerSet, Hand, ObjectModel, PerFinger, Vec3,
@@ -71,14 +72,26 @@ impl<'a> Holder<'a> {
         Self { hand, object, g_H, friction, press, relied: settings.relied, length }
     }
 
-    /// How the fingers of `holding` hold the object in each state; `None` where no forces of any friction do.
-    pub fn stage(
-        &self,
-        states: &[Configuration],
-        holding: impl Fn(&Configuration) -> FingerSet,
-    ) -> Vec<Option<Held>> {
-        let grips =
-            |press: &Press| -> Vec<Grip> { states.iter().map(|q| self.grip(q, holding(q), press)).collect() };
+    /// How the fingers hold the object in each state of a stage, by the forces that it brings where it brings
+    /// any; `None` where no forces of any friction do.
+    pub fn stage(&self, stage: &Stage<'_>) -> Vec<Option<Held>> {
+        let brought = |k: usize| stage.forces.get(k).and_then(Option::as_ref);
+        let mut all = vec![None; stage.states.len()];
+        for (k, (q, held)) in stage.states.iter().zip(&mut all).enumerate() {
+            *held = brought(k).map(|forces| self.brought(q, stage.holding(q), forces));
+        }
+        if all.iter().any(Option::is_none) {
+            let chosen = self.choose(stage);
+            all.iter_mut().zip(chosen).for_each(|(held, chosen)| *held = held.take().or(chosen));
+        }
+        all
+    }
+
+    fn choose(&self, stage: &Stage<'_>) -> Vec<Option<Held>> {
+        let states = stage.states;
+        let grips = |press: &Press| -> Vec<Grip> {
+            states.iter().map(|q| self.grip(q, stage.holding(q), press)).collect()
+        };
         let mut made = grips(&self.press);
         let mut needed = needs(&made);
         if needed.iter().any(|need| need.as_ref().is_none_or(|need| need.share > self.relied)) {
@@ -96,7 +109,7 @@ impl<'a> Holder<'a> {
             let share = if need.share <= 1.0 { eased } else { need.share * BEYOND };
             let forces = centre(grip, share, from.as_ref()).unwrap_or(need.forces);
             from = Some(forces);
-            Some(self.held(q, grip, &forces))
+            Some(self.found(q, grip, &forces))
         })
         .collect()
     }
@@ -106,8 +119,12 @@ impl<'a> Holder<'a> {
     pub fn one(&self, q: &Configuration, share: f64) -> Option<Held> {
         let grip = self.grip(q, q.holding(), &self.press);
         match centre(&grip, share, None) {
-            Some(forces) => Some(self.held(q, &grip, &forces)),
-            None => self.stage(slice::from_ref(q), Configuration::holding).pop().flatten(),
+            Some(forces) => Some(self.found(q, &grip, &forces)),
+            None => {
+                let states = slice::from_ref(q);
+                let stage = Stage { states, times: &[0.0], moving: None, forces: &[] };
+                self.stage(&stage).pop().flatten()
+            }
         }
     }
 
@@ -128,16 +145,33 @@ impl<'a> Holder<'a> {
         grip
     }
 
-    fn held(&self, q: &Configuration, grip: &Grip, forces: &Forces) -> Held {
+    fn found(&self, q: &Configuration, grip: &Grip, forces: &Forces) -> Held {
+        let in_O: Vec<_> = grip.bearings.iter().zip(forces).map(|(b, x)| b.force(x)).collect();
+        self.held(q, grip, &in_O, share_of(&grip.bearings, forces))
+    }
+
+    /// What forces (N, in O) that were chosen before ask for.
+    fn brought(&self, q: &Configuration, holding: FingerSet, forces: &PerFinger<Option<Vec3>>) -> Held {
+        let grip = self.grip(q, holding, &self.press);
+        let of_finger = |&finger: &FingerIndex| ContactForce::pure(forces[finger].unwrap_or_default());
+        let in_O: Vec<_> = grip.fingers.iter().map(of_finger).collect();
+        let share = |(&finger, exerted): (&FingerIndex, &ContactForce)| {
+            q.contacts[finger].map_or(0.0, |contact| self.friction.share(&contact.n_O, &exerted.force))
+        };
+        let share = grip.fingers.iter().zip(&in_O).map(share).fold(0.0, f64::max);
+        self.held(q, &grip, &in_O, share)
+    }
+
+    fn held(&self, q: &Configuration, grip: &Grip, forces: &[ContactForce], share: f64) -> Held {
         let mut held = Held {
             forces: PerFinger::filled(q.joints.len(), None),
             efforts: PerFinger::from_fn(q.joints.len(), |f| FingerJoints::zeros(q.joints[f].len())),
-            share: share_of(&grip.bearings, forces),
+            share,
             effort_share: 0.0,
             margin: f64::INFINITY,
         };
         for (i, &finger) in grip.fingers.iter().enumerate() {
-            let in_O = grip.bearings[i].force(&forces[i]);
+            let in_O = forces[i];
             let exerted = ContactForce { force: q.X_HO.rotation * in_O.force, spin: in_O.spin };
             let efforts = grip.bounds[i].efforts_of(&in_O.force, in_O.spin);
             let limits = grip.bounds[i].joints().iter().map(|joint| joint.limit);

@@ -27,6 +27,7 @@ mod finger;
 #[cfg(feature = "rapier")]
 mod fixed;
 mod force;
+mod grasp_forces;
 mod hold;
 mod holding;
 #[cfg(feature = "rapier")]
@@ -46,6 +47,7 @@ mod transfer;
 
 pub use error::PhysicsError;
 pub use force::{ContactForce, Friction};
+pub use grasp_forces::{grasp_forces, grasp_forces_at};
 pub use hold::Held;
 pub use holding::{
     Answer, Balanced, Bearing, Bearings, Exerted, Forces, HeldLoad, Press, Smallest, smallest_share,
@@ -57,6 +59,6 @@ pub use replay::{Moment, ReplayReport, ReplaySettings, StageReport, replay};
 #[cfg(feature = "rapier")]
 pub use report::{Bounds, Failure, Happening, Outcome};
 pub use settings::SimulationSettings;
-pub use stage::{Stage, grasp_forces, grasp_forces_at};
+pub use stage::Stage;
 #[cfg(feature = "rapier")]
 pub use transfer::TransferSimulator;

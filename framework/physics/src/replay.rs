@@ -188,7 +188,7 @@ impl Run<'_> {
         let start = self.clock + self.settings.shift;
         let first = stage.times.first().copied().unwrap_or(0.0);
         let mut least = f64::INFINITY;
-        let held = holder.stage(stage.states, |q| stage.holding(q));
+        let held = holder.stage(stage);
         let made = stage.states.iter().zip(held).zip(stage.times).map_while(|((q, held), time)| {
             let holding = stage.holding(q);
             let Held { efforts: feed, margin, .. } = held?;

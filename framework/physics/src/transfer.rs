@@ -5,7 +5,7 @@ use crate::hold::{Held, Holder};
 use crate::pace::Pace;
 use crate::simulator::{Knot, Scene, Simulator};
 use crate::surface::ball_surface;
-use crate::{Bounds, Failure, Happening, Outcome, PhysicsError, SimulationSettings};
+use crate::{Bounds, Failure, Happening, Outcome, PhysicsError, SimulationSettings, Stage};
 use rapier3d_f64::prelude::SharedShape;
 use regrasp_api::{Configuration, Hand, ObjectModel, Vec3};
 
@@ -44,7 +44,8 @@ impl TransferSimulator {
             let Held { efforts: feed, .. } = held.filter(|held| held.share <= 1.0)?;
             Some(Knot { time, X_HO: q.X_HO, joints: q.joints, feed, holding: q.holding() })
         };
-        let held = holder.stage(states, Configuration::holding);
+        let stage = Stage { states, times: &times, moving: None, forces: &[] };
+        let held = holder.stage(&stage);
         let mut knots: Vec<Knot> = states.iter().zip(held).zip(&times).map_while(knot).collect();
         let held = knots.len();
         if let Some(last) = knots.last() {

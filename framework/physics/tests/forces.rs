@@ -13,7 +13,7 @@ const FRICTION: Friction = Friction { mu: 0.7, gamma: 0.004 };
 fn held(object: &ObjectModel, friction: Friction) -> (Configuration, [Held; 2]) {
     let hand = hand();
     let states = [ring(&hand, object)];
-    let stage = |moving| Stage { states: &states, times: &[0.0], moving };
+    let stage = |moving| Stage { states: &states, times: &[0.0], moving, forces: &[] };
     let stages = [stage(None), stage(Some(FingerIndex(1)))];
     let all = grasp_forces((&hand, object, G), friction, &stages, &SimulationSettings::default()).unwrap();
     let [transfer, regrasp] = [0, 1].map(|stage: usize| all[stage][0].clone().expect("a full grasp map"));

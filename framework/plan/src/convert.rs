@@ -84,7 +84,8 @@ pub fn records(motion: &Motion, hand: &dyn Hand) -> Result<Vec<SegmentRecord>, C
         let states = segment.states.iter().zip(&segment.times).enumerate();
         let states = states.map(|(k, (q, &time))| {
             let velocities = segment.velocities.get(k).map(rows);
-            StateRecord { velocities, ..state_record(q, time, hand) }
+            let forces = segment.forces.get(k).and_then(Option::as_ref).map(force_rows);
+            StateRecord { velocities, forces, ..state_record(q, time, hand) }
         });
         let states = states.collect();
         Ok(SegmentRecord { kind, finger, states })
@@ -96,7 +97,11 @@ fn rows(joints: &PerFinger<FingerJoints>) -> Vec<Vec<f64>> {
     joints.iter().map(|(_, joints)| joints.to_vec()).collect()
 }
 
-/// The file's form of one configuration at a time (s), without velocities.
+fn force_rows(forces: &PerFinger<Option<Vec3>>) -> Vec<Option<[f64; 3]>> {
+    forces.iter().map(|(_, force)| force.map(Into::into)).collect()
+}
+
+/// The file's form of one configuration at a time (s), without velocities and forces.
 pub fn state_record(q: &Configuration, time: f64, hand: &dyn Hand) -> StateRecord {
     let orientation = q.X_HO.rotation.quaternion();
     let contact = |(finger, contact): (FingerIndex, &Option<Contact>)| {
@@ -148,6 +153,7 @@ pub fn motion(plan: &Plan) -> Result<Motion, ConvertError> {
             states: record.states.iter().enumerate().map(state).collect::<Result<_, _>>()?,
             times: record.states.iter().map(|state| state.time).collect(),
             velocities: record.states.iter().map_while(velocities).collect(),
+            forces: forces(&record.states),
         })
     };
     Ok(Motion { segments: plan.segments.iter().enumerate().map(one).collect::<Result<_, _>>()? })
@@ -157,7 +163,8 @@ pub fn motion(plan: &Plan) -> Result<Motion, ConvertError> {
 fn fits(state: &StateRecord, fingers: &[FingerDescription]) -> Result<(), StateError> {
     let wanted = || fingers.iter().map(|finger| finger.joint.len());
     let fits = |rows: &Vec<Vec<f64>>| rows.iter().map(Vec::len).eq(wanted());
-    if fits(&state.joints) && state.velocities.as_ref().is_none_or(fits) {
+    let forces = state.forces.as_ref().is_none_or(|forces| forces.len() == fingers.len());
+    if fits(&state.joints) && state.velocities.as_ref().is_none_or(fits) && forces {
         return Ok(());
     }
     Err(StateError::OtherHand)
@@ -191,6 +198,17 @@ pub fn configuration(state: &StateRecord) -> Result<Configuration, StateError> {
 fn velocities(state: &StateRecord) -> Option<PerFinger<FingerJoints>> {
     let rows = state.velocities.as_ref()?;
     Some(PerFinger::from_fn(rows.len(), |finger: FingerIndex| row(&rows[finger.index()])))
+}
+
+/// The forces of the states, where any of them has some.
+fn forces(states: &[StateRecord]) -> Vec<Option<PerFinger<Option<Vec3>>>> {
+    if states.iter().all(|state| state.forces.is_none()) {
+        return Vec::new();
+    }
+    let of_fingers = |rows: &Vec<Option<[f64; 3]>>| {
+        PerFinger::from_fn(rows.len(), |finger: FingerIndex| rows[finger.index()].map(Vec3::from))
+    };
+    states.iter().map(|state| state.forces.as_ref().map(of_fingers)).collect()
 }
 
 fn row(values: &[f64]) -> FingerJoints {

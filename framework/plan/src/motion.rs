@@ -1,6 +1,6 @@
 //! A motion in memory: segments of configurations, what the planner makes and the plan file holds.
 
-use regrasp_api::{Configuration, FingerIndex, FingerJoints, PerFinger};
+use regrasp_api::{Configuration, FingerIndex, FingerJoints, PerFinger, Vec3};
 
 /// What happens in a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,12 +23,15 @@ pub struct Segment {
     /// Joint velocities at each state (rad/s; m/s where prismatic); empty until the motion is timed, and in
     /// motions of plans of version 1.
     pub velocities: Vec<PerFinger<FingerJoints>>,
+    /// For each state the force of each finger that holds on the object, in O (N); `None` where nothing says
+    /// what holds it there. Empty until forces are chosen.
+    pub forces: Vec<Option<PerFinger<Option<Vec3>>>>,
 }
 
 impl Segment {
     /// A segment without times.
     pub fn new(kind: SegmentKind, states: Vec<Configuration>) -> Self {
-        Self { kind, states, times: Vec::new(), velocities: Vec::new() }
+        Self { kind, states, times: Vec::new(), velocities: Vec::new(), forces: Vec::new() }
     }
 }
 

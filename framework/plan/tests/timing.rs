@@ -124,6 +124,41 @@ fn a_smooth_path_is_driven_through_and_a_corner_is_a_stop() {
     assert!(a <= 1.01 && deviation < 1e-9, "{a} {deviation}");
 }
 
+/// Lines of 20 steps of 1.5 mm with a corner of this angle (rad) between them, by a finger in the air.
+fn bend(angle: f64) -> Motion {
+    let mut motion = straight(0.06, 40);
+    let segment = &mut motion.segments[0];
+    segment.kind = SegmentKind::Regrasp(FingerIndex(0));
+    for (k, q) in segment.states.iter_mut().enumerate() {
+        let (before, after) = (0.0015 * k.min(20) as f64, 0.0015 * k.saturating_sub(20) as f64);
+        let place = [before + after * angle.cos(), after * angle.sin(), 0.0];
+        q.joints[FingerIndex(0)].copy_from_slice(&place);
+    }
+    motion
+}
+
+#[test]
+fn a_finger_in_the_air_passes_a_corner_by_states_beside_it_on_the_way_that_was_meant() {
+    let hand = Fingertips::new(1, 1.0, 20.0);
+    let duration = |motion: &Motion| *motion.segments[0].times.last().unwrap();
+    for (angle, added) in [(0.0, 0), (0.15, 2), (1.5, 0)] {
+        let meant = bend(angle);
+        let mut motion = meant.clone();
+        assign_times(&mut motion, &hand, &TimingLimits::default()).unwrap();
+        let states = &motion.segments[0].states;
+        assert_eq!(states.len(), 41 + added, "a corner of {angle}");
+        assert!(meant.segments[0].states.iter().all(|q| states.contains(q)), "the old states stay");
+        let (v, a, deviation) = utilisation(&motion, &hand);
+        assert!(v <= 1.0 && a <= 1.01 && deviation <= 10e-6, "{v} {a} {deviation}");
+        // As a transfer the corner is a stop.
+        let mut stopped = meant;
+        stopped.segments[0].kind = SegmentKind::Transfer;
+        assign_times(&mut stopped, &hand, &TimingLimits::default()).unwrap();
+        let saved = duration(&stopped) - duration(&motion);
+        assert!(if added > 0 { saved > 0.01 } else { saved.abs() < 1e-12 }, "{angle}: {saved}");
+    }
+}
+
 /// One joint moves from 0 to `distance` in equal steps.
 fn straight(distance: f64, steps: usize) -> Motion {
     let mut q = state(&mut Random::from_key(1, 1, 1, 1), 1);

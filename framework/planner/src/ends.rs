@@ -73,8 +73,8 @@ impl Run<'_> {
         for _ in 0..count {
             match finder.next(&self.session, &self.task, &self.choices, &mut self.tally)? {
                 Some(q) => found.push(q),
-                // There is a grasp, and others are rare.
-                None if has_one => break,
+                // There is a grasp, and others are rare; or they are so rare that weaker ones must do.
+                None if has_one || found.is_empty() => break,
                 None => {}
             }
         }

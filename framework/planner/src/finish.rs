@@ -2,6 +2,7 @@
 
 use crate::draft::regrasps;
 use crate::error::PlanError;
+use crate::glide::glide;
 use crate::record::GraphRecord;
 use crate::report::{Outcome, Phase, Status};
 use crate::run::{Halt, Run};
@@ -24,6 +25,7 @@ impl Run<'_> {
             Ok(()) | Err(CallError::Interrupted) => {}
             Err(error) => return Err(error.into()),
         }
+        glide(&self.task, &mut self.draft.segments);
         self.draft.align_quaternions();
         let mut motion = Motion { segments: std::mem::take(&mut self.draft.segments) };
         self.timed(Phase::Timing, |run| {

@@ -20,6 +20,7 @@ mod error;
 mod explore;
 mod finish;
 mod foresight;
+mod glide;
 mod graph;
 mod history;
 mod meet;

@@ -100,7 +100,8 @@ mod tests {
         let joints = PerFinger::filled(3, Default::default());
         let q = Configuration { X_HO: Pose::identity(), joints, contacts };
         let (kind, states) = (SegmentKind::Transfer, vec![q.clone(), q]);
-        Motion { segments: vec![Segment { kind, states, times: vec![0.0, 1.0], velocities: vec![] }] }
+        let times = vec![0.0, 1.0];
+        Motion { segments: vec![Segment { times, ..Segment::new(kind, states) }] }
     }
 
     #[test]

@@ -24,7 +24,7 @@ impl Setup<'_> {
                     SegmentKind::Transfer => None,
                     SegmentKind::Regrasp(finger) => Some(finger),
                 };
-                Stage { states: &segment.states, times: &segment.times, moving }
+                Stage { states: &segment.states, times: &segment.times, moving, forces: &[] }
             })
             .collect();
         let parts = (self.hand(), &self.scenario.object, Vec3::from(problem.gravity));

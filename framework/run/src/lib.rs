@@ -3,6 +3,7 @@
 
 mod again;
 mod audit;
+mod carry;
 mod cones;
 mod error;
 mod forces;

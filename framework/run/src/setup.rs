@@ -3,7 +3,7 @@
 use crate::RunError;
 use crate::again::{TRIES, Try};
 use crate::error;
-use crate::scenario::{Scenario, ScenarioError};
+use crate::scenario::{Scenario, ScenarioError, other_test};
 use regrasp_abi::GuardedService;
 use regrasp_api::{
     Clearance, FrictionFactor, Hand, HoldDescription, Interrupt, Parts, Pose, PoseDescription, PoseError,
@@ -139,6 +139,7 @@ impl<'a> Setup<'a> {
         poses: impl Fn(&Scenario, &SceneClearance) -> Result<Vec<Pose>, ScenarioError>,
     ) -> Result<Self, RunError> {
         let choices = choices.resolve(registry)?;
+        can_hold(scenario, &choices)?;
         let limits = &scenario.problem.limits;
         let clearance = SceneClearance::new(
             scenario.hand.clone(),
@@ -192,6 +193,7 @@ impl<'a> Setup<'a> {
     /// last plan that comes about is the one that needs least.
     fn plan_and_verify(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Run, RunError> {
         let begin = options.clock.seconds();
+        self.refuse_too_heavy()?;
         let mut best: Option<Run> = None;
         for problem in self.problems() {
             // A smaller share of the friction is one more wish: where it does not come about, nothing is
@@ -310,6 +312,13 @@ impl<'a> Setup<'a> {
     pub fn hand(&self) -> &dyn Hand {
         self.scenario.hand.as_ref()
     }
+}
+
+/// Refuses a stability test, which the command line may have chosen, that cannot do what `[hold]` asks for.
+fn can_hold(scenario: &Scenario, choices: &Choices) -> Result<(), ScenarioError> {
+    let test = &choices.choice(regrasp_api::Slot::StabilityTest).id;
+    let refusal = scenario.problem.hold.as_ref().and_then(|hold| other_test(hold, test));
+    refusal.map_or(Ok(()), |refusal| Err(scenario.refuse(&refusal)))
 }
 
 /// The poses of start and goals; refuses those at which the object itself is in collision: no grasp could

@@ -11,8 +11,10 @@
 //! The speed along the path follows from reachability: Q.-C. Pham, H. Pham, "A new approach to time-optimal
 //! path parameterization based on reachability analysis", IEEE T-RO 2018. A pass backward finds from which
 //! speeds the rest can still be driven, a pass forward takes the highest of them. A state where the path
-//! turns too sharply for the cubic is passed at rest (a corner), as are the borders of regrasps.
+//! turns too sharply for the cubic is a corner: in a regrasp it gets states beside it where that lets it be
+//! passed; otherwise it is passed at rest, as are the borders of regrasps.
 
+mod blend;
 mod passes;
 mod path;
 
@@ -68,13 +70,17 @@ pub enum TimingError {
     },
 }
 
-/// Fills in times, from 0, and joint velocities of all states. Shared states of consecutive segments get the
+/// Fills in times, from 0, and joint velocities of all states, and adds states beside corners of regrasps, on
+/// the straight steps that the motion means. Shared states of consecutive segments get the
 /// same, all others strictly increasing times.
 ///
 /// Cost: linear in the number of states, some microseconds each.
 pub fn assign_times(motion: &mut Motion, hand: &dyn Hand, limits: &TimingLimits) -> Result<(), TimingError> {
     let bounds = JointBounds::of(hand, limits)?;
-    let path = Path::of(motion, hand, &bounds, limits)?;
+    let mut path = Path::of(motion, hand, &bounds, limits)?;
+    if blend::blend(motion, &path, &bounds) {
+        path = Path::of(motion, hand, &bounds, limits)?;
+    }
     let pace = passes::pace(&path, &bounds);
     let (mut time, mut state) = (0.0, 0);
     for segment in &mut motion.segments {

@@ -8,14 +8,14 @@
 
 use super::{JointBounds, TimingError, TimingLimits};
 use crate::{Motion, SegmentKind};
-use regrasp_api::{Configuration, FingerIndex, Hand, angle_between};
+use regrasp_api::{Configuration, Hand, angle_between};
 
 /// The largest value of f (1 - f)² and f² (1 - f) over 0 ≤ f ≤ 1, times 2: how far the cubic leaves the
 /// chord, in units of the span times the difference of tangent and chord, for whatever speeds at the step's
 /// two ends.
 const BULGE: f64 = 8.0 / 27.0;
-/// The part of the deviation that is used: Jacobians are those of a state, and change along a step.
-const USED_DEVIATION: f64 = 0.5;
+/// The part of the deviation that is used: tips are placed once for a step, where they stray most.
+const USED_DEVIATION: f64 = 0.9;
 
 /// The whole motion in a row, states that segments share counted once.
 pub(super) struct Path {
@@ -32,6 +32,9 @@ pub(super) struct Path {
     pub(super) stops: Vec<bool>,
     /// For each state the highest speed, as far as the velocities and the shortest step say.
     pub(super) caps: Vec<f64>,
+    /// For each corner, a state at rest between two steps that it would be left by too far otherwise: the
+    /// span of steps so short that it would not. 0 for all other states.
+    pub(super) reaches: Vec<f64>,
 }
 
 impl Path {
@@ -51,6 +54,7 @@ impl Path {
             rest_to_rest: Vec::with_capacity(steps),
             stops: row.iter().map(|(_, stop)| *stop).collect(),
             caps: vec![1.0; row.len()],
+            reaches: vec![0.0; row.len()],
         };
         for (k, pair) in row.windows(2).enumerate() {
             path.add_step(k, (pair[0].0, pair[1].0), bounds, limits);
@@ -102,25 +106,18 @@ impl Path {
         let tangent: Vec<f64> = (self.chord(k - 1).iter().zip(self.chord(k)))
             .map(|(c, d)| c * weight + d * (1.0 - weight))
             .collect();
-        // Tangent less chord, times span, is the same on both sides but for the ratio of the spans.
-        let difference: Vec<f64> = tangent.iter().zip(self.chord(k)).map(|(t, c)| t - c).collect();
-        let other: Vec<f64> = tangent.iter().zip(self.chord(k - 1)).map(|(t, c)| t - c).collect();
-        let (mut joint, mut deviation) = (0, 0.0_f64);
-        for finger in (0..hand.finger_count() as u8).map(FingerIndex) {
-            let J = hand.tip_kinematics(finger, &q.joints[finger]).J_v;
-            let range = joint..joint + J.ncols().min(hand.finger(finger).joints.len());
-            let tip = |e: &[f64]| {
-                let moved = e[range.clone()].iter().enumerate().map(|(j, e)| J.column(j) * *e);
-                moved.fold(regrasp_api::Vec3::zeros(), |sum, v| sum + v).norm()
-            };
-            deviation = deviation.max(BULGE * (after * tip(&difference)).max(before * tip(&other)));
-            joint += hand.finger(finger).joints.len();
-        }
-        if deviation <= USED_DEVIATION * limits.deviation {
+        let sides = [(self.chord(k - 1), -before), (self.chord(k), after)];
+        let strays = sides.map(|(chord, span)| strays(hand, q, (chord, &tangent), span));
+        let most = USED_DEVIATION * limits.deviation;
+        if strays.iter().all(|stray| *stray <= most) {
             self.tangents[k * self.joints..][..self.joints].copy_from_slice(&tangent);
-        } else {
-            self.stops[k] = true;
+            return;
         }
+        self.stops[k] = true;
+        // A side strays by its span squared over the sum of both, times what the corner is made of.
+        let rates = [(strays[0], before), (strays[1], after)]
+            .map(|(stray, span)| stray * (before + after) / (span * span));
+        self.reaches[k] = 2.0 * most / rates[0].max(rates[1]);
     }
 
     /// The highest speeds at which joints keep their velocities at the states and in between, and steps their
@@ -160,6 +157,34 @@ impl Path {
         let state = step + end;
         if self.stops[state] { 0.0 } else { self.tangent(state)[joint] - self.chord(step)[joint] }
     }
+}
+
+/// How far (m) the cubic takes a fingertip from a step's chord, at most, when it passes a state at its end with
+/// the tangent; the span is negative for the step before the state.
+///
+/// What is not progress along the chord is f (1 - f)² of the tangent's part across it, in units of twice the
+/// span where the other end is slow: most at a third of the way, where the tips are placed.
+fn strays(hand: &dyn Hand, q: &Configuration, (chord, tangent): (&[f64], &[f64]), span: f64) -> f64 {
+    let square: f64 = chord.iter().map(|c| c * c).sum();
+    let along = tangent.iter().zip(chord).map(|(t, c)| t * c).sum::<f64>() / square;
+    // The progress stays within the step where its slope, twice this at most, is between 0 and 3.
+    let along = if (0.0..=1.5).contains(&along) { along } else { 1.0 };
+    let (mut first, mut most) = (0, 0.0_f64);
+    for (finger, joints) in q.joints.iter() {
+        let count = joints.len();
+        let [c, t] = [chord, tangent].map(|row| &row[first..first + count]);
+        first += count;
+        if t.iter().zip(c).all(|(t, c)| t == c) {
+            continue;
+        }
+        let (mut line, mut cubic) = (*joints, *joints);
+        for j in 0..count {
+            line[j] += 0.5 * span * c[j];
+            cubic[j] = line[j] + BULGE * span * (t[j] - along * c[j]);
+        }
+        most = most.max((hand.tip_center(finger, &cubic) - hand.tip_center(finger, &line)).norm());
+    }
+    most
 }
 
 /// All states in a row, each with whether the motion must rest there: at its ends, and where a regrasp begins

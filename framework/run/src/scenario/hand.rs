@@ -18,6 +18,8 @@ pub struct LoadedHand {
     pub description: HandDescription,
     /// What a user should know of how the file was understood.
     pub remarks: Vec<String>,
+    /// The first joint to which its file gives no effort, as a sentence calls it: what it can do is a guess.
+    pub effortless: Option<String>,
 }
 
 /// A hand by itself.
@@ -72,7 +74,22 @@ fn described(document: Document, folder: &Path) -> Result<LoadedHand, ScenarioEr
     let mut description: HandDescription = document.read()?;
     embed_hand(&mut description, folder).map_err(|error| document.refused(&error))?;
     let hand = ChainHand::new(description.clone()).map_err(|error| document.refused(&error))?;
-    Ok(LoadedHand { hand, description, remarks: Vec::new() })
+    let effortless = effortless(&document, &description);
+    Ok(LoadedHand { hand, description, remarks: Vec::new(), effortless })
+}
+
+/// The first joint that moves by itself and has no effort in the file.
+fn effortless(document: &Document, description: &HandDescription) -> Option<String> {
+    let fingers = description.finger.iter().enumerate();
+    let mut joints = fingers.flat_map(|(f, finger)| {
+        finger
+            .joint
+            .iter()
+            .enumerate()
+            .map(move |(j, joint)| (format!("finger[{f}].joint[{j}].effort"), joint))
+    });
+    let (key, joint) = joints.find(|(key, joint)| joint.mimic.is_none() && !document.has(&key_path(key)))?;
+    Some(format!("joint `{}` of `{}` (`{key}`)", joint.name, description.name))
 }
 
 fn from_robot(
@@ -84,7 +101,7 @@ fn from_robot(
     let ReadHand { description, report } =
         read_hand(path, &choice.options(folder)).map_err(|error| robot_refused(scenario, error))?;
     let hand = ChainHand::new(description.clone()).map_err(|error| scenario.refused(&error))?;
-    Ok(LoadedHand { hand, description, remarks: remarks(path, &report) })
+    Ok(LoadedHand { hand, description, remarks: remarks(path, &report), effortless: None })
 }
 
 /// What was chosen because the scenario does not say it.

@@ -1,7 +1,7 @@
 //! `[hold]`: what it sets, and what contradicts it.
 
 use super::{Document, ScenarioError, ScenarioFile, key_path};
-use regrasp_api::{FrictionFactor, HoldDescription, Limits, Slot};
+use regrasp_api::{FrictionFactor, HoldDescription, Limits, Most, Refusal, Slot};
 use regrasp_host::Choices;
 use serde_json::Value;
 
@@ -19,11 +19,13 @@ pub(super) fn apply(
 ) -> Result<(), ScenarioError> {
     let Some(hold) = &content.hold else { return Ok(()) };
     check(document, content, hold)?;
+    refuse_both(document, content)?;
     if content.plugins.stability_test.id.is_none() && content.plugins.stability_test.settings.is_empty() {
         choices.use_plugin(Slot::StabilityTest, HOLDING);
     }
     if choices.choice(Slot::StabilityTest).id != HOLDING {
-        return other_test(document, hold, &choices.choice(Slot::StabilityTest).id);
+        let refused = other_test(hold, &choices.choice(Slot::StabilityTest).id);
+        return refused.map_or(Ok(()), |refusal| Err(document.refused(&refusal)));
     }
     let mut set = |key: &str, value: Value| choices.set(Slot::StabilityTest, key, value);
     set("weight", hold.weight.into());
@@ -91,15 +93,50 @@ fn check(document: &Document, content: &ScenarioFile, hold: &HoldDescription) ->
     Ok(())
 }
 
-/// Another test that the file chooses may stand where `[hold]` asks for no more than a share of the friction.
-fn other_test(document: &Document, hold: &HoldDescription, id: &str) -> Result<(), ScenarioError> {
+/// Refuses settings of the stability test that `[hold]` gives too.
+fn refuse_both(document: &Document, content: &ScenarioFile) -> Result<(), ScenarioError> {
+    let pairs = [
+        ("weight", "hold.weight"),
+        ("friction_factor", "hold.friction_factor"),
+        ("disturbance_force", "hold.disturbance"),
+        ("disturbance_torque", "hold.disturbance"),
+        ("max_normal_force", "hold.max_normal_force"),
+    ];
+    let settings = &content.plugins.stability_test.settings;
+    let both = |(key, _): &&(&str, &str)| settings.keys().any(|set| set == key);
+    let Some((key, of_hold)) = pairs.iter().find(both) else { return Ok(()) };
+    let key = format!("plugins.stability-test.{key}");
+    let message = format!("`{key}` and `{of_hold}` both say what grasps must hold; leave the former out");
+    Err(document.refuse(&key_path(&key), message))
+}
+
+/// Refuses a hand whose efforts are guesses where `[hold]` plans by them.
+pub(super) fn ask_for_efforts(
+    document: &Document,
+    content: &ScenarioFile,
+    effortless: Option<String>,
+) -> Result<(), ScenarioError> {
+    let (Some(joint), Some(_)) = (effortless, &content.hold) else { return Ok(()) };
+    let message = format!(
+        "`[hold]` plans by what the joints can give, and {joint} has none; write its `effort` (N·m), or make \
+         the hand file with `regrasp hand FILE --effort N·m`"
+    );
+    Err(document.refuse(&key_path("hold"), message))
+}
+
+/// Why the stability test `id` cannot do what `[hold]` asks for; another test than `holding` may stand where
+/// that is no more than a share of the friction.
+pub(crate) fn other_test(hold: &HoldDescription, id: &str) -> Option<Refusal> {
+    if id == HOLDING {
+        return None;
+    }
     let asked = [
         (hold.disturbance != [0.0; 2], "disturbance"),
         (hold.max_normal_force.is_some(), "max_normal_force"),
-        (hold.friction_factor == FrictionFactor::Most(regrasp_api::Most::Most), "friction_factor"),
+        (hold.friction_factor == FrictionFactor::Most(Most::Most), "friction_factor"),
     ];
-    let Some((_, key)) = asked.into_iter().find(|(is_asked, _)| *is_asked) else { return Ok(()) };
-    let message =
-        format!("`hold.{key}`: `{id}` cannot do what it asks for; use `{HOLDING}`, or leave the key out");
-    Err(document.refuse(&key_path(&format!("hold.{key}")), message))
+    let (_, key) = asked.into_iter().find(|(is_asked, _)| *is_asked)?;
+    let fix = format!("use `{HOLDING}`, or leave the key out");
+    let message = format!("`hold.{key}`: `{id}` cannot do what it asks for; {fix}");
+    Some(Refusal::new("unsupported", &message).key(format!("hold.{key}")).value(id).remedy(fix))
 }

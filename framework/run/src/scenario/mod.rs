@@ -16,6 +16,7 @@ mod library;
 pub use error::*;
 pub use file::*;
 pub use hand::{LoadedHand, load_hand};
+pub(crate) use hold::other_test;
 pub use library::*;
 
 pub use document::{Document, is_json, key_path};
@@ -141,7 +142,9 @@ fn from_document(
     let content: ScenarioFile = document.read()?;
     let mut choices = choices(&document, &content.plugins, registry)?;
     hold::apply(&document, &content, &mut choices)?;
-    let hand::LoadedHand { hand, description, mut remarks } = hand::load(&document, &content.hand, folder)?;
+    let hand::LoadedHand { hand, description, mut remarks, effortless } =
+        hand::load(&document, &content.hand, folder)?;
+    hold::ask_for_efforts(&document, &content, effortless)?;
     let mut problem = problem(&content, description);
     check_problem(&problem).map_err(|error| document.refused(&error))?;
     embed_obstacles(&mut problem.obstacle, folder).map_err(|error| document.refused(&error))?;
