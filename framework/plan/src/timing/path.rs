@@ -117,7 +117,8 @@ impl Path {
         // A side strays by its span squared over the sum of both, times what the corner is made of.
         let rates = [(strays[0], before), (strays[1], after)]
             .map(|(stray, span)| stray * (before + after) / (span * span));
-        self.reaches[k] = 2.0 * most / rates[0].max(rates[1]);
+        // A little less, for rounding and what bends.
+        self.reaches[k] = 1.9 * most / rates[0].max(rates[1]);
     }
 
     /// The highest speeds at which joints keep their velocities at the states and in between, and steps their
