@@ -83,14 +83,7 @@ impl Setup<'_> {
             contacts: PerFinger::from_fn(count, |_| Some(self.plugins.surface.sample(&mut random))),
         };
         let states = (0..PROBES).map(probe).collect();
-        Motion {
-            segments: vec![Segment {
-                kind: SegmentKind::Transfer,
-                states,
-                times: vec![],
-                velocities: vec![],
-            }],
-        }
+        Motion { segments: vec![Segment::new(SegmentKind::Transfer, states)] }
     }
 
     /// The facets of a primitive, a mesh standing in the scenario; and the surface that contacts live on,
