@@ -7,15 +7,61 @@
 //! fault ([`regrasp_api::report_fault`]): [`regrasp_api::Context::proceed`] then ends the call, and the
 //! planner takes the fault in place of the call's result.
 
-use regrasp_api::{BuildError, Built, CallError, SettingsError};
+use crate::wrapped::{Around, Wrapped};
+use regrasp_api::{BuildError, Built, CallError, LoneFinger, SettingsError};
 use std::any::Any;
+use std::ops::Deref;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// A plugin object and its id, or an object of a service and the service's name.
-pub(crate) struct Guard<T: ?Sized> {
-    pub plugin: &'static str,
-    /// Always there, until the guard is dropped.
+/// Catches what panics around a call, and names the plugin or the service that it was.
+#[derive(Clone, Copy, Debug)]
+pub struct Caught(pub(crate) &'static str);
+
+impl Around for Caught {
+    fn call<R>(&self, call: impl FnOnce() -> Result<R, CallError>) -> Result<R, CallError> {
+        caught(self.0, call).and_then(|answer| answer)
+    }
+
+    fn value<R>(&self, call: impl FnOnce() -> R, harmless: impl FnOnce() -> R) -> R {
+        caught(self.0, call).unwrap_or_else(|fault| {
+            regrasp_api::report_fault(fault);
+            harmless()
+        })
+    }
+
+    /// A plugin owns the object that it is handed: its end, too, runs inside the plugin's library.
+    fn lone_finger<'a>(&'a self, finger: Box<dyn LoneFinger + 'a>) -> Box<dyn LoneFinger + 'a> {
+        Box::new(owned(self.0, finger))
+    }
+}
+
+/// An object that is owned, and whose end may panic.
+pub(crate) struct Owned<T: ?Sized> {
+    name: &'static str,
+    /// Always there, until it is dropped.
     object: Option<Box<T>>,
+}
+
+impl<T: ?Sized> Deref for Owned<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        self.object.as_deref().expect("it is taken only when it is dropped")
+    }
+}
+
+impl<T: ?Sized> Drop for Owned<T> {
+    fn drop(&mut self) {
+        let object = self.object.take();
+        // Nothing is computed with the object any more: a panic here spoils no result, and must not be taken
+        // for a fault of the thread's next call. The panic's message has been printed already.
+        let _ = caught(self.name, || drop(object));
+    }
+}
+
+/// An object behind a guard to its end.
+pub(crate) fn owned<T: ?Sized>(name: &'static str, object: Box<T>) -> Wrapped<Caught, Owned<T>> {
+    Wrapped::new(Caught(name), Owned { name, object: Some(object) })
 }
 
 /// A role's trait object that can be put behind a guard.
@@ -23,38 +69,6 @@ pub(crate) struct Guard<T: ?Sized> {
 pub trait Guardable {
     /// The same object behind a guard.
     fn guarded(object: Box<Self>, plugin: &'static str) -> Box<Self>;
-}
-
-impl<T: ?Sized> Guard<T> {
-    pub fn new(plugin: &'static str, object: Box<T>) -> Self {
-        Self { plugin, object: Some(object) }
-    }
-
-    fn object(&self) -> &T {
-        self.object.as_deref().expect("it is taken only when the guard is dropped")
-    }
-
-    /// A call that can fail.
-    pub fn call<'a, R>(&'a self, call: impl FnOnce(&'a T) -> Result<R, CallError>) -> Result<R, CallError> {
-        caught(self.plugin, || call(self.object())).and_then(|answer| answer)
-    }
-
-    /// A call that returns a plain value; `harmless` takes its place after a panic.
-    pub fn value<'a, R>(&'a self, call: impl FnOnce(&'a T) -> R, harmless: impl FnOnce() -> R) -> R {
-        caught(self.plugin, || call(self.object())).unwrap_or_else(|fault| {
-            regrasp_api::report_fault(fault);
-            harmless()
-        })
-    }
-}
-
-impl<T: ?Sized> Drop for Guard<T> {
-    fn drop(&mut self) {
-        let object = self.object.take();
-        // Nothing is computed with the object any more: a panic here spoils no result, and must not be taken
-        // for a fault of the thread's next call. The panic's message has been printed already.
-        let _ = caught(self.plugin, || drop(object));
-    }
 }
 
 /// Runs `call`; a panic becomes [`CallError::Panicked`].

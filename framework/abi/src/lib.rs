@@ -12,11 +12,13 @@ mod roles;
 mod services;
 #[cfg(test)]
 mod tests;
+mod wrapped;
 
 pub use entry::*;
 pub use export::*;
 pub use fingerprint::*;
-pub use guard::{Guardable, guarded};
+pub use guard::{Caught, Guardable, guarded};
 #[doc(hidden)]
 pub use regrasp_api as api;
 pub use services::*;
+pub use wrapped::{Around, Wrapped};

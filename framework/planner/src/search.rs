@@ -214,7 +214,7 @@ impl Search<'_> {
 
     fn decide(&mut self, step: u64) -> Result<Action, CallError> {
         let view = self.view();
-        let view = GuardedService(&view as &dyn GraphView);
+        let view = GuardedService::guarding("service/graph", &view as &dyn GraphView);
         let key = (Call::Strategy, self.leg.number as u64, step);
         let decided = self
             .session

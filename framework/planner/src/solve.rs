@@ -18,7 +18,7 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
     let poses = poses(request.problem)?;
     // A sampler from a library asks for admission in its own binary, which a panic could not leave.
     let policy = request.plugins.strategy.policy();
-    let admissible = GuardedService(admission(policy.admission));
+    let admissible = GuardedService::guarding("service/admissible", admission(policy.admission));
     let task = Task {
         hand: request.hand,
         clearance: request.clearance,
@@ -33,7 +33,7 @@ pub fn solve(request: &Request<'_>) -> Result<Outcome, PlanError> {
         workspace: request.problem.sampling_box(&poses),
         landmarks: &poses,
     };
-    let holdable = GuardedService(&Holdable as &dyn Admissible);
+    let holdable = GuardedService::guarding("service/admissible", &Holdable as &dyn Admissible);
     let choices = finger_choices(&task, policy.spare_fingers, policy.more_fingers)?;
     let end_choices = finger_choices(&task, 0, true)?;
     let pool = pool(request.threads);

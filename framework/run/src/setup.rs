@@ -292,11 +292,12 @@ impl<'a> Setup<'a> {
         seed: u64,
     ) -> Result<Outcome, RunError> {
         let (hand, clearance) = (self.hand(), &self.clearance as &dyn Clearance);
-        let guarded = (GuardedService(hand), GuardedService(clearance));
+        let guarded_hand = GuardedService::guarding("service/hand", hand);
+        let guarded_clearance = GuardedService::guarding("service/clearance", clearance);
         let request = Request {
             problem,
-            hand: if self.has_loaded { &guarded.0 } else { hand },
-            clearance: if self.has_loaded { &guarded.1 } else { clearance },
+            hand: if self.has_loaded { &guarded_hand } else { hand },
+            clearance: if self.has_loaded { &guarded_clearance } else { clearance },
             object: &self.scenario.object,
             plugins: self.plugins.plugins(),
             seed,

@@ -1,6 +1,6 @@
 //! The meter: self times from readings of an injected clock.
 
-use regrasp_api::Slot;
+use regrasp_api::{Role, Slot};
 use regrasp_planner::Clock;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
@@ -23,6 +23,15 @@ impl Source {
             Self::Slot(slot) => slot as usize,
             Self::Clearance => Slot::ALL.len(),
         }
+    }
+
+    /// Whether its calls lead to calls of others.
+    pub fn calls_others(self) -> bool {
+        let role = match self {
+            Self::Slot(slot) => slot.role(),
+            Self::Clearance => return false,
+        };
+        matches!(role, Role::Sampler | Role::LocalPlanner | Role::GraphStrategy)
     }
 }
 

@@ -8,34 +8,45 @@
 //! of planning, in all less than 2 %.
 
 mod meter;
-mod roles;
-mod services;
 
 pub use meter::*;
 
-use regrasp_api::{Plugins, Slot, with_slots};
+use regrasp_abi::{Around, Wrapped};
+use regrasp_api::{CallError, LoneFinger, Plugins, Slot, with_slots};
 use regrasp_planner::{Outcome, PlanError, Request};
 
-/// Something that is timed.
-pub(super) struct Timed<'a, T: ?Sized> {
-    inner: &'a T,
+/// Charges the meter with the time of the calls to one source.
+#[derive(Clone, Copy)]
+struct Timing<'a> {
     meter: &'a Meter<'a>,
     source: Source,
 }
 
-impl<'a, T: ?Sized> Timed<'a, T> {
-    fn new(inner: &'a T, meter: &'a Meter<'a>, source: Source) -> Self {
-        Self { inner, meter, source }
+impl Timing<'_> {
+    fn timed<R>(&self, call: impl FnOnce() -> R) -> R {
+        if self.source.calls_others() {
+            self.meter.outer(self.source, call)
+        } else {
+            self.meter.leaf(self.source, call)
+        }
+    }
+}
+
+impl Around for Timing<'_> {
+    fn call<R>(&self, call: impl FnOnce() -> Result<R, CallError>) -> Result<R, CallError> {
+        self.timed(call)
     }
 
-    /// A call that may lead to calls of others.
-    fn outer<R>(&self, call: impl FnOnce(&'a T) -> R) -> R {
-        self.meter.outer(self.source, || call(self.inner))
+    fn value<R>(&self, call: impl FnOnce() -> R, _: impl FnOnce() -> R) -> R {
+        self.timed(call)
     }
 
-    /// A call that leads to no calls of others.
-    fn leaf<R>(&self, call: impl FnOnce(&'a T) -> R) -> R {
-        self.meter.leaf(self.source, || call(self.inner))
+    fn constant<R>(&self, call: impl FnOnce() -> R, _: impl FnOnce() -> R) -> R {
+        call()
+    }
+
+    fn lone_finger<'a>(&'a self, finger: Box<dyn LoneFinger + 'a>) -> Box<dyn LoneFinger + 'a> {
+        Box::new(Wrapped::new(*self, finger))
     }
 }
 
@@ -44,8 +55,9 @@ macro_rules! solve {
         /// Plans as `request` says, on one thread, and charges the meter with the time of each slot and of
         /// clearance.
         pub(super) fn solve(request: &Request<'_>, meter: &Meter<'_>) -> Result<Outcome, PlanError> {
-            $(let $field = Timed::new(request.plugins.$field, meter, Source::Slot(Slot::$slot));)+
-            let clearance = Timed::new(request.clearance, meter, Source::Clearance);
+            let timing = |source| Timing { meter, source };
+            $(let $field = Wrapped::new(timing(Source::Slot(Slot::$slot)), request.plugins.$field);)+
+            let clearance = Wrapped::new(timing(Source::Clearance), request.clearance);
             regrasp_planner::solve(&Request {
                 plugins: Plugins { $($field: &$field),+ },
                 clearance: &clearance,
