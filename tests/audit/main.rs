@@ -3,14 +3,16 @@
 #![allow(missing_docs)]
 
 mod contact_models;
+mod examples;
 mod local_planners;
+mod replays;
 mod samplers;
 mod stability_tests;
 mod strategies;
 mod surfaces;
 
 use regrasp::api::Slot;
-use regrasp::run::{AuditCase, NeverStops, Run, RunError, RunOptions};
+use regrasp::run::{AuditCase, Depth, NeverStops, Run, RunError, RunOptions};
 use regrasp::{Stopwatch, load, setup};
 use serde_json::json;
 
@@ -21,7 +23,7 @@ fn audited(scenario: &str, slot: Slot, lie: &str) -> (Result<Run, RunError>, Opt
     scenario.choices.set(slot, "lie", json!(lie));
     let watch = Stopwatch::start();
     let options = RunOptions { stop: &NeverStops, ..watch.options(1) };
-    setup(&scenario).unwrap().run_audited(&options)
+    setup(&scenario).unwrap().run_audited(&options, Depth::Full)
 }
 
 /// Breaks unless the audit catches each lie by the law beside it, or by one of them where two are.
@@ -88,7 +90,7 @@ fn an_audit_changes_no_plan() {
         let scenario = load(name).unwrap();
         let (plain, watch) = (setup(&scenario).unwrap(), Stopwatch::start());
         let options = watch.options(2);
-        let (under_audit, case) = plain.run_audited(&options);
+        let (under_audit, case) = plain.run_audited(&options, Depth::Full);
         assert!(case.is_none(), "{name}: {:?}", case.map(|case| case.breach));
         let (a, b) = (plain.run(&options).unwrap(), under_audit.unwrap());
         assert!(b.is_verified());

@@ -1,8 +1,8 @@
 //! A plugin with an auditor in front of it.
 
-use crate::auditor::{Auditor, is_resting, resting};
+use crate::auditor::{Auditor, Key, is_resting, resting};
 use crate::laws::{Broken, Kept, broken, ensure};
-use regrasp_api::{CallError, Context, Slot, pending_fault, report_fault};
+use regrasp_api::{CallError, Context, Slot, Tally, pending_fault, report_fault};
 use serde_json::Value;
 use std::fmt::Debug;
 
@@ -22,12 +22,12 @@ impl<'a, T: ?Sized> Audited<'a, T> {
     /// A call that returns a plain value: a breach becomes the thread's fault.
     pub(crate) fn value<R>(
         &self,
-        call: &'static str,
+        (call, key): (&'static str, Key),
         act: impl FnOnce(&'a T) -> R,
         input: impl FnOnce() -> Value,
         check: impl FnOnce(&'a T, &R) -> Kept,
     ) -> R {
-        if is_resting() {
+        if is_resting() || !self.auditor.looks_at(key) {
             return act(self.inner);
         }
         let answer = act(self.inner);
@@ -43,13 +43,13 @@ impl<'a, T: ?Sized> Audited<'a, T> {
     /// A call that returns a `Result` and counts itself, made twice; see [`Self::value_of`].
     pub(crate) fn call<R: Debug + PartialEq>(
         &self,
-        call: &'static str,
+        (call, key): (&'static str, Key),
         context: &mut Context<'_>,
         act: impl Fn(&'a T, &mut Context<'_>) -> Result<R, CallError>,
         input: impl FnOnce(&Context<'_>) -> Value,
         check: impl FnOnce(&'a T, &R, &Context<'_>) -> Kept,
     ) -> Result<R, CallError> {
-        self.value_of(call, context, act, input, |inner, answer, context| {
+        self.value_of((call, key), context, act, input, |inner, answer, context| {
             let slot = self.slot.name();
             let calls = context.tally.calls(self.slot);
             ensure("counted", calls == 1, || {
@@ -64,13 +64,13 @@ impl<'a, T: ?Sized> Audited<'a, T> {
     /// The second answer comes with the same random stream, and must be the same and count the same.
     pub(crate) fn value_of<R: Debug + PartialEq>(
         &self,
-        call: &'static str,
+        (call, key): (&'static str, Key),
         context: &mut Context<'_>,
         act: impl Fn(&'a T, &mut Context<'_>) -> Result<R, CallError>,
         input: impl FnOnce(&Context<'_>) -> Value,
         check: impl FnOnce(&'a T, &R, &Context<'_>) -> Kept,
     ) -> Result<R, CallError> {
-        if is_resting() {
+        if is_resting() || !self.auditor.looks_at(key) {
             return act(self.inner, context);
         }
         let mut twin = context.twin();
@@ -89,7 +89,8 @@ impl<'a, T: ?Sized> Audited<'a, T> {
             if twin.random != context.random {
                 return broken("pure", "the same call again draws other random numbers");
             }
-            if twin.tally != context.tally.since(&before) {
+            // Without notes and messages, which `since` leaves out.
+            if twin.tally.since(&Tally::default()) != context.tally.since(&before) {
                 return broken("pure", "the same call again counts other calls or refusals");
             }
             check(self.inner, &answer, &twin)

@@ -1,7 +1,8 @@
 //! What a plugin was called with, as JSON: SI units, frames as in the plan file.
 
 use regrasp_api::{
-    Cone, Configuration, Contact, Context, FingerSet, Grasp, PerFinger, Pose, PoseRequest, Target, Vec3,
+    Cone, Configuration, Contact, Context, FingerSet, Grasp, PerFinger, Pose, PoseRequest, Random, Target,
+    Vec3,
 };
 use serde_json::{Value, json};
 
@@ -74,7 +75,12 @@ pub(crate) fn target(target: &Target<'_>) -> Value {
     }
 }
 
-/// The state of the random stream, as its next words.
+/// The state of a random stream.
+pub(crate) fn random_state(random: &Random) -> Value {
+    random.state().iter().map(|word| format!("{word:016x}")).collect()
+}
+
+/// The state of the call's random stream.
 pub(crate) fn random(context: &Context<'_>) -> Value {
-    context.random.state().iter().map(|word| format!("{word:016x}")).collect()
+    random_state(&context.random)
 }

@@ -21,10 +21,12 @@ pub mod fixtures;
 mod law;
 mod leaves;
 pub mod reference;
+mod replay;
 mod report;
 mod roles;
 mod silence;
 
+pub use replay::{ReplayError, assert_replay_keeps, replay};
 pub use report::{Check, Outcome, Report};
 pub use silence::{assert_silent, registered_are_silent};
 

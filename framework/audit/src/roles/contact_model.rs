@@ -1,5 +1,6 @@
 //! Contact models under audit.
 
+use crate::auditor::{Key, bits};
 use crate::laws::{self, Kept, ensure};
 use crate::{Audited, input};
 use regrasp_api::{Cone, Contact, ContactModel, FingerIndex, MAX_FINGERS};
@@ -7,6 +8,11 @@ use serde_json::json;
 
 /// A friction a little smaller, whose cone must lie inside.
 const LESS: f64 = 0.9;
+
+/// What a contact's cone is known by.
+fn key(contact: &Contact) -> Key {
+    Key::Short(bits(contact.p_OC.iter()))
+}
 
 /// The laws of one cone, however it was asked for.
 fn cone_kept(cone: &Cone<'_>, again: &Cone<'_>, mu: f64) -> Kept {
@@ -20,7 +26,7 @@ fn cone_kept(cone: &Cone<'_>, again: &Cone<'_>, mu: f64) -> Kept {
 impl ContactModel for Audited<'_, dyn ContactModel + '_> {
     fn cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
         self.value(
-            "cone",
+            ("cone", key(contact)),
             |model| model.cone(finger, contact, mu),
             || json!({ "finger": finger.0, "contact": input::contact(contact), "mu": mu }),
             |model, cone| {
@@ -32,7 +38,7 @@ impl ContactModel for Audited<'_, dyn ContactModel + '_> {
 
     fn spinning_cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
         self.value(
-            "spinning_cone",
+            ("spinning_cone", key(contact)),
             |model| model.spinning_cone(finger, contact, mu),
             || json!({ "finger": finger.0, "contact": input::contact(contact), "mu": mu }),
             |model, cone| {
@@ -45,7 +51,7 @@ impl ContactModel for Audited<'_, dyn ContactModel + '_> {
 
     fn fewest_contacts(&self) -> usize {
         self.value(
-            "fewest_contacts",
+            ("fewest_contacts", Key::Always),
             |model| model.fewest_contacts(),
             || json!({}),
             |_, fewest| {

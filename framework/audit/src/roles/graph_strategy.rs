@@ -1,6 +1,7 @@
 //! Strategies under audit.
 
 use crate::Audited;
+use crate::auditor::Key;
 use crate::laws::ensure;
 use regrasp_api::{Action, CallError, Context, GraphStrategy, GraphView, NodeId, SearchPolicy};
 use serde_json::json;
@@ -8,7 +9,7 @@ use serde_json::json;
 impl GraphStrategy for Audited<'_, dyn GraphStrategy + '_> {
     fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError> {
         self.call(
-            "next",
+            ("next", Key::Always),
             context,
             |strategy, context| strategy.next(graph, context),
             |context| {

@@ -1,10 +1,21 @@
 //! Local planners under audit.
 
+use crate::auditor::{Key, bits};
 use crate::laws::{self, Chain, Ground, Motion};
 use crate::{Audited, input};
 use regrasp_api::{CallError, Configuration, Context, LocalPlanner, Path, Reached, Target, Task};
 use serde_json::json;
 use std::cell::RefCell;
+
+/// What a call is known by: where it begins and where it is to go.
+fn key(from: &Configuration, to: &Target<'_>) -> Key {
+    let there = match to {
+        Target::Grasp(q) => &q.X_HO.translation.vector,
+        Target::Transfer(X_HO) => &X_HO.translation.vector,
+        Target::Regrasp { contact, .. } => contact.map_or(&from.X_HO.translation.vector, |c| &c.p_OC),
+    };
+    Key::Long(bits(from.X_HO.translation.vector.iter().chain(there.iter())))
+}
 
 impl LocalPlanner for Audited<'_, dyn LocalPlanner + '_> {
     fn connect(
@@ -23,7 +34,7 @@ impl LocalPlanner for Audited<'_, dyn LocalPlanner + '_> {
             false => planner.connect(task, from, to, Some(&mut stored.borrow_mut()), context),
         };
         self.call(
-            "connect",
+            ("connect", key(from, to)),
             context,
             connect,
             |context| {

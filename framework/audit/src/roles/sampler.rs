@@ -1,5 +1,6 @@
 //! Samplers under audit.
 
+use crate::auditor::{Key, bits};
 use crate::laws::{self, Chain, Ground, Kept, ensure};
 use crate::{Audited, input};
 use regrasp_api::{
@@ -16,6 +17,11 @@ impl Audited<'_, dyn ClosedChainSampler + '_> {
         let ground = Ground { mesh: &self.auditor.object.mesh, radius: self.auditor.radius };
         Chain { task, ground, closure: CLOSED }
     }
+}
+
+/// What a sample is known by: its random numbers.
+fn key(context: &Context<'_>) -> Key {
+    Key::Long(context.random.state().iter().fold(0, |sum, word| sum ^ word))
 }
 
 /// A sampler that finds nothing has counted why.
@@ -36,7 +42,7 @@ impl ClosedChainSampler for Audited<'_, dyn ClosedChainSampler + '_> {
         context: &mut Context<'_>,
     ) -> Result<Option<Configuration>, CallError> {
         self.call(
-            "sample",
+            ("sample", key(context)),
             context,
             |sampler, context| sampler.sample(task, pose, holding, context),
             |context| {
@@ -74,7 +80,7 @@ impl ClosedChainSampler for Audited<'_, dyn ClosedChainSampler + '_> {
         context: &mut Context<'_>,
     ) -> Result<Option<Configuration>, CallError> {
         self.value_of(
-            "close",
+            ("close", Key::Long(bits(X_HO.translation.vector.iter()))),
             context,
             |sampler, context| sampler.close(task, X_HO, contacts, near, context),
             |context| {

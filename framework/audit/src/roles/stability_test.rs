@@ -1,5 +1,6 @@
 //! Stability tests under audit.
 
+use crate::auditor::{Key, bits};
 use crate::laws::{self, Kept, broken, ensure};
 use crate::{Audited, input};
 use regrasp_api::{
@@ -10,6 +11,11 @@ use serde_json::json;
 
 /// More friction, with which a stable grasp stays stable.
 const MORE: f64 = 1.25;
+
+/// What a grasp is known by.
+fn key(grasp: &Grasp<'_>) -> Key {
+    Key::Short(bits(grasp.contacts().iter().flat_map(|contact| contact.p_OC.iter())))
+}
 
 /// The verdict without a hint; `None` where the run ends, or the test does not handle the cones.
 fn plain(test: &dyn StabilityTest, grasp: &Grasp<'_>, context: &mut Context<'_>) -> Option<Stability> {
@@ -70,7 +76,7 @@ impl StabilityTest for Audited<'_, dyn StabilityTest + '_> {
         let first = std::cell::Cell::new(true);
         let hint = std::cell::RefCell::new(hint);
         self.call(
-            "test",
+            ("test", key(grasp)),
             context,
             |test, context| match first.replace(false) {
                 true => test.test(grasp, &mut hint.borrow_mut(), context),
@@ -90,7 +96,7 @@ impl StabilityTest for Audited<'_, dyn StabilityTest + '_> {
     ) -> Result<Assessment, CallError> {
         let object = self.auditor.object;
         self.value_of(
-            "assess",
+            ("assess", Key::Always),
             context,
             |test, context| test.assess(grasp, length, center_O, context),
             |_| {
@@ -119,7 +125,7 @@ impl StabilityTest for Audited<'_, dyn StabilityTest + '_> {
         context: &mut Context<'_>,
     ) -> Result<FingerSet, CallError> {
         self.value_of(
-            "liftable",
+            ("liftable", key(grasp)),
             context,
             |test, context| test.liftable(grasp, enough, context),
             |_| json!({ "grasp": input::grasp(grasp), "enough": enough }),
@@ -147,7 +153,7 @@ impl StabilityTest for Audited<'_, dyn StabilityTest + '_> {
         context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
         self.value_of(
-            "stable_without",
+            ("stable_without", key(grasp)),
             context,
             |test, context| test.stable_without(grasp, finger, context),
             |_| json!({ "grasp": input::grasp(grasp), "finger": finger.0 }),

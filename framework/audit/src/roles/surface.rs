@@ -1,5 +1,6 @@
 //! Surfaces under audit.
 
+use crate::auditor::{Key, bits};
 use crate::laws::{self, Ground, Kept, ensure};
 use crate::{Audited, input};
 use regrasp_api::{CallError, Contact, Context, Projection, Random, SurfaceParam, SurfacePath, Vec3};
@@ -20,9 +21,9 @@ impl SurfaceParam for Audited<'_, dyn SurfaceParam + '_> {
     fn sample(&self, random: &mut Random) -> Contact {
         let before = random.clone();
         self.value(
-            "sample",
+            ("sample", Key::Short(random.state()[0])),
             |surface| surface.sample(random),
-            || json!({}),
+            || json!({ "random": input::random_state(&before) }),
             |surface, found| {
                 alike(found, &surface.sample(&mut before.clone()))?;
                 laws::contact_on_surface(&self.ground(), found)
@@ -45,7 +46,7 @@ impl SurfaceParam for Audited<'_, dyn SurfaceParam + '_> {
             Ok((found, found.then(|| path.clone())))
         };
         let answer = self.call(
-            "geodesic",
+            ("geodesic", Key::Short(bits(from.p_OC.iter().chain(to.p_OC.iter())))),
             context,
             walked,
             |_| json!({ "from": input::contact(from), "to": input::contact(to) }),
@@ -59,7 +60,7 @@ impl SurfaceParam for Audited<'_, dyn SurfaceParam + '_> {
 
     fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
         self.value(
-            "project",
+            ("project", Key::Short(bits(p_OF.iter()))),
             |surface| surface.project(p_OF, hint),
             || json!({ "p_OF": input::vector(p_OF), "hint": hint }),
             |surface, found| {
@@ -85,7 +86,7 @@ impl SurfaceParam for Audited<'_, dyn SurfaceParam + '_> {
 
     fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
         self.value(
-            "walk",
+            ("walk", Key::Short(bits(from.p_OC.iter().chain(direction_O.iter())))),
             |surface| surface.walk(from, direction_O, distance),
             || {
                 json!({
@@ -103,7 +104,7 @@ impl SurfaceParam for Audited<'_, dyn SurfaceParam + '_> {
 
     fn edge_distance(&self, contact: &Contact) -> f64 {
         self.value(
-            "edge_distance",
+            ("edge_distance", Key::Short(bits(contact.p_OC.iter()))),
             |surface| surface.edge_distance(contact),
             || json!({ "contact": input::contact(contact) }),
             |surface, found| {
