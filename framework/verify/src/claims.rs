@@ -2,7 +2,7 @@
 
 use crate::verdict::{Check, Gauge};
 use regrasp_api::{FrictionFactor, HoldLoad, ObjectModel, Slot};
-use regrasp_plan::{ConeClaim, Criterion, MarginFrame, Place, Plan, TransferLaw};
+use regrasp_plan::{ConeClaim, ConeRecord, Criterion, MarginFrame, Place, Plan, TransferLaw};
 
 /// The contact models that the verifier knows.
 const KNOWN: [&str; 3] = ["contact-model/pcwf", "contact-model/frictionless", "contact-model/soft-finger"];
@@ -36,8 +36,13 @@ pub(crate) fn claims(plan: &Plan, object: &ObjectModel) -> Check {
                 fault(note);
             }
         }
-        None if known => fault(format!("`{}` has an elliptic cone, but the plan claims none", claim.model)),
+        None if known && claim.cones.is_empty() => {
+            fault(format!("`{}` has an elliptic cone, but the plan claims none", claim.model))
+        }
         None => {}
+    }
+    if let Some(note) = claim.cones.iter().find_map(|cone| wrong_record(cone, object.friction)) {
+        fault(note);
     }
     if !frame_agrees(&plan.claims.margin, object) {
         fault("margins must be measured about the object's centre of mass, in its largest radius".into());
@@ -86,6 +91,21 @@ fn wrong_cone(model: &str, cone: &ConeClaim, plan: &Plan, friction: f64) -> Opti
         }
         _ => None,
     }
+}
+
+/// What is wrong with the cone of a single contact, if anything.
+fn wrong_record(cone: &ConeRecord, friction: f64) -> Option<String> {
+    let (mu, torsions): (f64, Vec<f64>) = match cone {
+        ConeRecord::Elliptic(cone) => (cone.mu, vec![cone.gamma]),
+        ConeRecord::Polyhedral(edges) => {
+            let reach = edges.iter().map(|edge| edge.tangential[0].hypot(edge.tangential[1]));
+            // NaN must not hide behind a larger number.
+            let reach = reach.fold(0.0, |most: f64, x| if x > most || x.is_nan() { x } else { most });
+            (reach, edges.iter().map(|edge| edge.torsion).collect())
+        }
+    };
+    let sound = (0.0..=friction * (1.0 + 1e-9)).contains(&mu) && torsions.iter().all(|m| m.is_finite());
+    (!sound).then(|| format!("a contact's cone reaches friction {mu}, the object has {friction}"))
 }
 
 /// What is wrong with the claimed criterion, if anything: it must be no weaker than what the scenario's test

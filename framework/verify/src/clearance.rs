@@ -17,7 +17,7 @@ use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use nalgebra::Point3;
 use regrasp_api::{Body, BodyPair, MAX_FINGERS, Vec3};
-use regrasp_plan::{Extreme, Place};
+use regrasp_plan::{Extreme, HoldsAt, Place};
 
 /// How often a step between samples is halved before the clearance there counts as not certified: what
 /// remains is a hundredth of the step.
@@ -278,7 +278,8 @@ impl<'s> ClearanceCheck<'s> {
     /// smallest found, and between them none is more than [`GRAIN`] below it.
     pub(crate) fn extreme(&self) -> Option<Extreme> {
         let certified = |worst: f64| (worst - GRAIN).max(worst.min(self.demanded));
-        self.gauge.worst().map(|worst| Extreme { value: certified(worst), place: self.gauge.place().clone() })
+        let worst = self.gauge.worst()?;
+        Some(Extreme::new(certified(worst), self.gauge.place().clone(), HoldsAt::EveryTime))
     }
 
     pub(crate) fn check(self) -> Check {

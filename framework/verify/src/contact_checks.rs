@@ -9,7 +9,7 @@ use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use nalgebra::Point3;
 use regrasp_api::{MAX_FINGERS, Pose, Tolerances, Vec3};
-use regrasp_plan::{ContactRecord, Extreme, Place, TransferLaw};
+use regrasp_plan::{ContactRecord, Extreme, HoldsAt, Place, TransferLaw};
 
 /// The gauges of all contacts.
 pub(crate) struct ContactChecks<'s> {
@@ -231,7 +231,7 @@ impl<'s> ContactChecks<'s> {
     /// Largest closure residual and slip, for the certificate.
     pub(crate) fn extremes(&self) -> (Option<Extreme>, Option<Extreme>) {
         let extreme =
-            |gauge: &Gauge| gauge.worst().map(|value| Extreme { value, place: gauge.place().clone() });
+            |gauge: &Gauge| Some(Extreme::new(gauge.worst()?, gauge.place().clone(), HoldsAt::Samples));
         (extreme(&self.closure), extreme(&self.slip))
     }
 

@@ -5,7 +5,7 @@ use crate::contact_checks::ContactChecks;
 use crate::hand::Chains;
 use crate::lift::LiftCheck;
 use crate::scene::Scene;
-use crate::stability::{HoldingCheck, HoldsCheck, StabilityCheck};
+use crate::stability::{ConesCheck, HoldingCheck, HoldsCheck, StabilityCheck};
 use crate::touch::Touch;
 use crate::track::{self, Frames, Leg, SAMPLES};
 use crate::verdict::{Gauge, Verdict};
@@ -36,7 +36,7 @@ use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 /// | `contact-surface` | where contacts live on a twin of the mesh: a fingertip that touches it is no farther from the mesh, and enters it no deeper, than the bound that the plan states; at every sample of the motion, and all over the twin |
 /// | `lift`, `touch-travel` | a moving fingertip rises until it is lifted, and does not slide while it touches |
 /// | `clearance` | every pair that may not touch keeps its distance, also between the samples |
-/// | `stability` | the fingers that hold prove force closure, or what else the plan claims: forces that hold the load, at every sample; in a regrasp the others do, both ends included |
+/// | `stability` | the fingers that hold prove force closure, or what else the plan claims: forces that hold the load, at every sample (where contacts have cones of their own, at every state); in a regrasp the others do, both ends included |
 /// | `forces` | where the plan records forces: they belong to the fingers that hold, balance the object's weight, and keep to what the plan claims to hold by |
 /// | `claims` | the contacts and the criterion claimed agree with the scenario |
 /// | `start`, `goals`, `complete` | the plan starts at the start, reaches the goals that it claims, and these are all |
@@ -100,6 +100,8 @@ struct Sampled<'w> {
     clearance: ClearanceCheck<'w>,
     lift: LiftCheck<'w>,
     stability: StabilityCheck,
+    /// In its place where contacts have cones of their own.
+    cones: Option<ConesCheck>,
     /// In its place where the plan claims that joints' efforts hold the object; `None` within where the claim
     /// has no meaning.
     holding: Option<Option<HoldingCheck>>,
@@ -117,6 +119,7 @@ impl Walk<'_> {
             clearance: ClearanceCheck::new(self.hand, self.scene, tolerances.clearance),
             lift: LiftCheck::new(self.hand, self.scene, tolerances, lift),
             stability: StabilityCheck::new(&self.plan.claims, weight_H(self.plan, self.object)),
+            cones: ConesCheck::new(&self.plan.claims),
             holding: self.holding(),
             holds: self.holds(),
         };
@@ -156,6 +159,9 @@ impl Walk<'_> {
         frames.place(self.hand, leg, 0, 0.0);
         *touches = sampled.contacts.sample(leg, 0, 0, frames);
         sampled.stability.sample(leg, 0, 0, &frames.X_HO.rotation, touches);
+        if let Some(cones) = &mut sampled.cones {
+            cones.state(leg, 0, touches);
+        }
         if let Some(Some(holding)) = &mut sampled.holding {
             holding.sample((leg, 0, 0), self.hand, frames, touches);
         }
@@ -187,6 +193,9 @@ impl Walk<'_> {
                     touches[sample] = sampled.contacts.sample(leg, state, sample, &frames[sample]);
                     let R_HO = &frames[sample].X_HO.rotation;
                     sampled.stability.sample(leg, state, sample, R_HO, &touches[sample]);
+                    if let Some(cones) = sampled.cones.as_mut().filter(|_| stated) {
+                        cones.state(leg, state + 1, &touches[sample]);
+                    }
                     if let Some(Some(holding)) = &mut sampled.holding {
                         holding.sample((leg, state, sample), self.hand, &frames[sample], &touches[sample]);
                     }
@@ -211,7 +220,10 @@ impl Walk<'_> {
     fn gather(&self, mut sampled: Sampled<'_>, tolerances: &Tolerances) -> Verdict {
         let (closure_residual, slip) = sampled.contacts.extremes();
         let certificate = PlanCertificate {
-            closure_margin: sampled.stability.extreme(),
+            closure_margin: match &sampled.cones {
+                Some(cones) => cones.extreme(),
+                None => sampled.stability.extreme(),
+            },
             clearance: sampled.clearance.extreme(),
             slip,
             closure_residual,
@@ -231,7 +243,7 @@ impl Walk<'_> {
         checks.extend(sampled.lift.checks());
         checks.push(sampled.clearance.check());
         checks.push(match sampled.holding {
-            None => sampled.stability.check(),
+            None => sampled.cones.map_or_else(|| sampled.stability.check(), ConesCheck::check),
             Some(None) => HoldingCheck::no_meaning(),
             Some(Some(holding)) => holding.check_made(),
         });

@@ -8,7 +8,7 @@ use crate::track::{Frames, Leg};
 use crate::verdict::{Check, Gauge};
 use nalgebra::Vector6;
 use regrasp_api::{HoldLoad, MAX_FINGERS, Vec3};
-use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, Holds, Place};
+use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, Holds, HoldsAt, Place};
 
 /// How far forces may be from balance, of the load.
 const BALANCED: f64 = 1e-6;
@@ -213,7 +213,7 @@ impl HoldsCheck {
             let is_worse =
                 kept.as_ref().is_none_or(|k| if larger { value > k.value } else { value < k.value });
             if is_worse && value.is_finite() {
-                *kept = Some(Extreme { value, place: place() });
+                *kept = Some(Extreme::new(value, place(), HoldsAt::EveryState));
             }
         };
         worse(&mut self.friction, figures.friction, true);

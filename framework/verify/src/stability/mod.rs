@@ -4,6 +4,7 @@
 //! internal forces that prove it: L. Han, J. Trinkle, Z. Li, "Grasp analysis as linear matrix inequality
 //! problems", IEEE T-RA 2000.
 
+mod cones;
 mod force;
 mod held;
 mod holding;
@@ -14,12 +15,13 @@ mod socp;
 use crate::touch::Touch;
 use crate::track::{Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
+pub(crate) use cones::ConesCheck;
 use force::{Contact, LEAST_SLACK, Proof};
 pub(crate) use holding::HoldingCheck;
 pub(crate) use holds::HoldsCheck;
 use load::LoadCheck;
 use regrasp_api::{MAX_FINGERS, Rotation, Vec3};
-use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, Place};
+use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, HoldsAt, Place};
 
 /// Grasps not proved stable after which no more are looked at: the plan is refused anyway.
 const MOST_FAILURES: usize = 100;
@@ -80,7 +82,8 @@ impl StabilityCheck {
         let cone = claims.contact.cone.filter(valid).filter(|_| known && !elsewhere);
         if claims.contact.cone.is_none() {
             gauge.remark(
-                "not independently checked: the plan claims no elliptic cone that all its contacts share",
+                "not independently checked: the plan claims no elliptic cone that all its contacts share, \
+                    and no closure by cones of their own",
             );
         } else if cone.is_none() && known && !elsewhere {
             gauge.note(f64::NAN, || Place {
@@ -241,7 +244,7 @@ impl StabilityCheck {
             worst.lower = refined;
         }
         let worst = self.margins.iter().min_by(|a, b| a.lower.total_cmp(&b.lower))?;
-        Some(Extreme { value: worst.lower, place: worst.place.clone() })
+        Some(Extreme::new(worst.lower, worst.place.clone(), HoldsAt::EveryState))
     }
 
     pub(crate) fn check(self) -> Check {

@@ -55,6 +55,25 @@ pub(crate) fn best_within(
     Some(forces_of(&problem.solve()?, &tangents))
 }
 
+/// The shares λ ≥ t, Σ λ = 1, with Σ λ times the columns zero, that have the largest t.
+pub(crate) fn best_shares(columns: &[Vector6<f64>]) -> Option<Vec<f64>> {
+    let count = columns.len();
+    let mut problem = Problem::new(count + 1);
+    for (j, column) in columns.iter().enumerate() {
+        (0..6).for_each(|axis| problem.set(axis, j, column[axis]));
+        problem.set(6, j, 1.0);
+        // -λ + t + s = 0 with s ≥ 0.
+        problem.set(7 + j, j, -1.0);
+        problem.set(7 + j, count, 1.0);
+    }
+    problem.b = vec![0.0; 7 + count];
+    problem.b[6] = 1.0;
+    problem.cones = vec![SupportedConeT::ZeroConeT(7), SupportedConeT::NonnegativeConeT(count)];
+    let mut solution = problem.solve()?;
+    solution.truncate(count);
+    Some(solution)
+}
+
 fn forces_of(solution: &[f64], tangents: &[[Vec3; 2]]) -> (Forces, f64) {
     let mut forces = [Force::default(); MAX_FINGERS];
     for (i, force) in forces.iter_mut().take(tangents.len()).enumerate() {

@@ -1,0 +1,301 @@
+//! Closure of contacts whose cones the plan records one by one: round ones as they are where all of a grasp are
+//! round, otherwise cones of edges, and round ones by edges inside them.
+//!
+//! The edges' wrenches span all of space positively, which is closure, exactly if they have rank 6 and some
+//! positive combination of all of them is zero (A. J. Goldman, A. W. Tucker, "Polyhedral convex cones", 1956).
+//! Such a combination is a proof that arithmetic can check, whoever found it.
+
+use super::force::{self, Contact};
+use super::socp;
+use crate::touch::Touch;
+use crate::track::Leg;
+use crate::verdict::{Check, Gauge, Side};
+use nalgebra::{Cholesky, Matrix6, Vector6};
+use regrasp_api::{Cone, ConeEdge, MAX_FINGERS, Vec3, tangents};
+use regrasp_plan::{Claims, ConeRecord, Criterion, EdgeRecord, Extreme, HoldsAt, Place};
+
+/// The least share of an edge in a proof, the shares of all summing to 1.
+const LEAST_SHARE: f64 = 1e-8;
+/// The least singular value of the edges' wrenches that counts as rank 6.
+const LEAST_SINGULAR: f64 = 1e-6;
+/// The part of the solver's least share below which carried shares are no longer taken.
+const DWINDLED: f64 = 0.4;
+/// Grasps not proved stable after which no more are looked at: the plan is refused anyway.
+const MOST_FAILURES: usize = 100;
+
+/// Follows the grasp along the plan, state by state: between two of them no cones are recorded.
+pub(crate) struct ConesCheck {
+    gauge: Gauge,
+    cones: Vec<Cone<'static>>,
+    center_O: Vec3,
+    length: f64,
+    /// The last shares, and the least of those that the solver found when it was last asked.
+    carried: Option<(Vec<f64>, f64)>,
+    /// The same where all cones of the grasp are round.
+    carried_round: Option<(force::Proof, f64)>,
+    /// The smallest margin.
+    worst: Option<Extreme>,
+    failures: usize,
+}
+
+impl ConesCheck {
+    /// `None` where the plan records no cones, or claims more than closure.
+    pub(crate) fn new(claims: &Claims) -> Option<Self> {
+        let cones = &claims.contact.cones;
+        let applies = claims.contact.cone.is_none() && !cones.is_empty();
+        (applies && claims.criterion == Criterion::Closure).then(|| Self {
+            gauge: Gauge::new("stability", "share", Side::Above, LEAST_SHARE),
+            cones: cones.iter().map(cone).collect(),
+            center_O: claims.margin.center_O.into(),
+            length: claims.margin.length,
+            carried: None,
+            carried_round: None,
+            worst: None,
+            failures: 0,
+        })
+    }
+
+    /// Takes in a state with the contacts of the fingers that hold there.
+    pub(crate) fn state(&mut self, leg: &Leg<'_>, state: usize, touches: &[Option<Touch>; MAX_FINGERS]) {
+        if self.failures >= MOST_FAILURES {
+            return;
+        }
+        let Some(held) = self.held(leg, state, touches) else {
+            let note = Some("a contact without a recorded cone".into());
+            return self.gauge.note(f64::NAN, || Place { note, ..leg.at(state) });
+        };
+        let found = match self.round(&held) {
+            Some(contacts) => self.prove_round(&contacts),
+            None => self.prove(&self.columns(&held)).map(|proof| (proof.least, proof.margin())),
+        };
+        match found {
+            Some((room, margin)) => {
+                self.gauge.note(room, || leg.at(state));
+                if self.worst.as_ref().is_none_or(|worst| margin < worst.value) {
+                    self.worst = Some(Extreme::new(margin, leg.at(state), HoldsAt::EveryState));
+                }
+            }
+            None => {
+                self.failures += 1;
+                self.gauge.note(0.0, || leg.at(state));
+                self.worst = Some(Extreme::new(0.0, leg.at(state), HoldsAt::EveryState));
+            }
+        }
+    }
+
+    /// The contacts that hold, with their cones; `None` where one has no cone.
+    fn held(
+        &self,
+        leg: &Leg<'_>,
+        state: usize,
+        touches: &[Option<Touch>; MAX_FINGERS],
+    ) -> Option<Vec<(Touch, Cone<'static>)>> {
+        let numbers = leg.states[state].record.cones.as_ref()?;
+        let holding = touches.iter().enumerate().filter(|&(finger, _)| leg.moving != Some(finger));
+        let with_cone = |(finger, touch): (usize, Touch)| {
+            let cone = self.cones.get((*numbers.get(finger)?)?)?;
+            // Contacts may spin in a transfer, and a spinning contact transmits no torsion.
+            let cone = if leg.moving.is_some() { cone.clone() } else { cone.without_torsion() };
+            Some((touch, cone))
+        };
+        holding.filter_map(|(finger, touch)| Some((finger, (*touch)?))).map(with_cone).collect()
+    }
+
+    /// The contacts, where all their cones are round.
+    fn round(&self, held: &[(Touch, Cone<'_>)]) -> Option<Vec<Contact>> {
+        let contact = |(touch, cone): &(Touch, Cone<'_>)| match *cone {
+            Cone::Elliptic { mu, gamma } => Some(Contact {
+                r: (touch.p_OC - self.center_O) / self.length,
+                n: -touch.n_O,
+                mu,
+                gamma: gamma / self.length,
+            }),
+            Cone::Polyhedral(_) => None,
+        };
+        held.iter().map(contact).collect()
+    }
+
+    /// Slack and margin of round contacts, from the carried force, else (or where its slack has dwindled) from
+    /// the solver's.
+    fn prove_round(&mut self, contacts: &[Contact]) -> Option<(f64, f64)> {
+        let carried = self.carried_round.take().and_then(|(proof, solved)| {
+            let proof = force::prove(contacts, &proof.forces)?;
+            (proof.slack > DWINDLED * solved).then_some((proof, solved))
+        });
+        let (proof, solved) = match carried {
+            Some(carried) => carried,
+            None => super::best(contacts).map(|proof| (proof, proof.slack)).ok()?,
+        };
+        self.carried_round = Some((proof, solved));
+        Some((proof.slack, force::margin(contacts, &proof)))
+    }
+
+    /// The wrenches of all edges, torques over the length.
+    fn columns(&self, held: &[(Touch, Cone<'_>)]) -> Vec<Vector6<f64>> {
+        let mut columns = Vec::new();
+        for (touch, cone) in held {
+            let (r, n) = ((touch.p_OC - self.center_O) / self.length, -touch.n_O);
+            let [t1, t2] = tangents(&n);
+            columns.extend(edges(cone).iter().map(|edge| {
+                let f = n + t1 * edge.tangential[0] + t2 * edge.tangential[1];
+                let m = r.cross(&f) + n * (edge.torsion / self.length);
+                Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z)
+            }));
+        }
+        columns
+    }
+
+    /// A proof from the carried shares, else (or where they have dwindled) from the solver's.
+    fn prove(&mut self, columns: &[Vector6<f64>]) -> Option<Proof> {
+        if let Some((shares, solved)) = &self.carried
+            && let Some(proof) = prove(columns, shares)
+            && proof.least > DWINDLED * solved
+        {
+            self.carried = Some((proof.shares.clone(), *solved));
+            return Some(proof);
+        }
+        self.carried = None;
+        let proof = prove(columns, &socp::best_shares(columns)?)?;
+        self.carried = Some((proof.shares.clone(), proof.least));
+        Some(proof)
+    }
+
+    /// The smallest margin, for the certificate.
+    pub(crate) fn extreme(&self) -> Option<Extreme> {
+        self.worst.clone()
+    }
+
+    pub(crate) fn check(self) -> Check {
+        self.gauge.check()
+    }
+}
+
+/// Shares of the edges, which balance.
+struct Proof {
+    shares: Vec<f64>,
+    least: f64,
+    /// A lower bound of the wrenches' smallest singular value.
+    singular: f64,
+}
+
+impl Proof {
+    /// A lower bound of the closure margin Q1 = min over |w| = 1 of the largest power a_j = w·W_j of an edge.
+    ///
+    /// The shares λ balance, so the powers above zero, weighted, sum to as much as those below, and that is at
+    /// most max a_j: Σ λ |a| ≤ 2 max a. And Σ λ |a| ≥ min λ · |Wᵀw| ≥ min λ · σ_min(W).
+    fn margin(&self) -> f64 {
+        0.5 * self.least * self.singular
+    }
+}
+
+/// Brings shares to balance by the smallest correction, and checks them.
+fn prove(columns: &[Vector6<f64>], shares: &[f64]) -> Option<Proof> {
+    if shares.len() != columns.len() {
+        return None;
+    }
+    let gram: Matrix6<f64> = columns.iter().map(|column| column * column.transpose()).sum();
+    let factor = Cholesky::new(gram)?;
+    let singular = 1.0 / factor.inverse().norm().sqrt();
+    let sum_of = |shares: &[f64]| -> Vector6<f64> {
+        columns.iter().zip(shares).map(|(column, share)| column * *share).sum()
+    };
+    let correction = factor.solve(&sum_of(shares));
+    let mut shares: Vec<f64> =
+        columns.iter().zip(shares).map(|(column, share)| share - column.dot(&correction)).collect();
+    let total: f64 = shares.iter().sum();
+    if !(singular >= LEAST_SINGULAR && total > 0.0 && total.is_finite()) {
+        return None;
+    }
+    shares.iter_mut().for_each(|share| *share /= total);
+    let least = shares.iter().copied().fold(f64::INFINITY, f64::min);
+    // What balances the residual exactly is smaller than residual/singular, and must leave no share at zero.
+    let proved = least >= LEAST_SHARE && sum_of(&shares).norm() <= 0.5 * singular * least;
+    proved.then_some(Proof { shares, least, singular })
+}
+
+/// The edges of a cone; of a round one, edges on its surface: 48 round it, in steps of torsion as fine.
+fn edges(cone: &Cone<'_>) -> Vec<ConeEdge> {
+    const ROUND: usize = 48;
+    const LEVELS: i32 = 12;
+    let (mu, gamma) = match cone {
+        Cone::Polyhedral(edges) => return edges.to_vec(),
+        Cone::Elliptic { mu, gamma } => (*mu, *gamma),
+    };
+    let levels = if gamma > 0.0 { -LEVELS..=LEVELS } else { 0..=0 };
+    let level = |level: i32| {
+        let (sin, cos) = (f64::from(level) / f64::from(LEVELS) * std::f64::consts::FRAC_PI_2).sin_cos();
+        (0..ROUND).map(move |k| {
+            let (y, x) = (std::f64::consts::TAU * k as f64 / ROUND as f64).sin_cos();
+            ConeEdge { tangential: [mu * cos * x, mu * cos * y], torsion: gamma * sin }
+        })
+    };
+    levels.flat_map(level).collect()
+}
+
+fn cone(record: &ConeRecord) -> Cone<'static> {
+    let edge = |edge: &EdgeRecord| ConeEdge { tangential: edge.tangential, torsion: edge.torsion };
+    match record {
+        ConeRecord::Elliptic(cone) => Cone::Elliptic { mu: cone.mu, gamma: cone.gamma },
+        ConeRecord::Polyhedral(edges) => Cone::Polyhedral(edges.iter().map(edge).collect()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contacts round the equator of a unit ball, each with a cone of this grain.
+    fn columns(count: usize, mu: [f64; 2]) -> Vec<Vector6<f64>> {
+        let contact = |k: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / count as f64).sin_cos();
+            let n_O = Vec3::new(cos, sin, 0.0);
+            let cone = Cone::grained(&n_O, &Vec3::z(), mu, 0.0);
+            let [t1, t2] = tangents(&-n_O);
+            edges(&cone)
+                .into_iter()
+                .map(move |edge| {
+                    let f = -n_O + t1 * edge.tangential[0] + t2 * edge.tangential[1];
+                    let m = n_O.cross(&f);
+                    Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z)
+                })
+                .collect::<Vec<_>>()
+        };
+        (0..count).flat_map(contact).collect()
+    }
+
+    fn closes(columns: &[Vector6<f64>]) -> Option<f64> {
+        Some(prove(columns, &socp::best_shares(columns)?)?.margin())
+    }
+
+    #[test]
+    fn a_ball_is_held_where_friction_holds_it_along_and_across_the_equator() {
+        let margin = closes(&columns(3, [0.6, 0.4])).expect("three fingers close a ball");
+        // No margin exceeds the power of any one wrench.
+        assert!(margin > 0.0 && margin < 1.0, "{margin}");
+        // Without friction along the axis nothing pushes the ball up, without the other nothing turns it.
+        assert!(closes(&columns(3, [0.0, 0.4])).is_none());
+        assert!(closes(&columns(3, [0.6, 0.0])).is_none());
+        assert!(closes(&columns(1, [0.6, 0.4])).is_none());
+    }
+
+    #[test]
+    fn the_margin_is_below_every_sampled_power() {
+        let columns = columns(4, [0.7, 0.3]);
+        let margin = closes(&columns).expect("four fingers close a ball");
+        let mut random = regrasp_api::Random::from_key(1, 0, 0, 0);
+        for _ in 0..2000 {
+            let (a, b) = (random.direction(), random.direction());
+            let w = Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z) / std::f64::consts::SQRT_2;
+            let power = columns.iter().map(|column| column.dot(&w)).fold(f64::NEG_INFINITY, f64::max);
+            assert!(power >= margin, "{power} {margin}");
+        }
+    }
+
+    #[test]
+    fn shares_that_do_not_balance_prove_nothing() {
+        let columns = columns(2, [0.6, 0.4]);
+        // Two fingers alone leave the ball free to turn about the line between them.
+        assert!(closes(&columns).is_none());
+        assert!(prove(&columns, &vec![1.0; columns.len() - 1]).is_none());
+    }
+}
