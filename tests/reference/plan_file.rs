@@ -2,7 +2,7 @@
 
 use crate::{page, printed};
 use regrasp::api::{Figure, Slot, check_schema};
-use regrasp::plan::{ConeClaim, ConeRecord, ContactSurface, EdgeRecord, Extreme, Holds, Plan};
+use regrasp::plan::{ConeClaim, ConeRecord, ContactSurface, EdgeRecord, Extreme, Holds, HoldsAt, Plan};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -90,7 +90,7 @@ fn full(plan: &Value) -> Value {
     let cone = ConeClaim { mu: 0.5, gamma: 0.0 };
     plan.claims.contact.cones = vec![ConeRecord::Elliptic(cone), ConeRecord::Polyhedral(vec![edge])];
     plan.notes.insert(Slot::Sampler, [("hits".to_owned(), Figure::one(1.0))].into());
-    let figure = || Extreme { value: 1.0, place: Default::default() };
+    let figure = || Extreme::new(1.0, Default::default(), HoldsAt::EveryState);
     if let Some(certificate) = &mut plan.certificate {
         certificate.holds =
             Some(Holds { friction: figure(), mass: figure(), disturbance: figure(), effort: Some(figure()) });

@@ -43,6 +43,41 @@ pub struct Extreme {
     /// Where it is reached.
     #[serde(rename = "where")]
     pub place: Place,
+    /// Whether the figure bounds all times of the motion, or is the worst of the verifier's samples. Absent
+    /// in files of earlier programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub holds_at: Option<HoldsAt>,
+}
+
+/// At which times a figure of the certificate holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum HoldsAt {
+    /// A bound: at no time of the motion it is worse.
+    EveryTime,
+    /// A bound at each of the plan's states. Between them the verifier checks the same demand, not this
+    /// figure.
+    EveryState,
+    /// The worst of the verifier's samples, ten to a step; in between it may be a little worse.
+    Samples,
+}
+
+impl HoldsAt {
+    /// What stands behind the figure in print.
+    pub fn remark(self) -> &'static str {
+        match self {
+            Self::EveryTime => "",
+            Self::EveryState => ", at the states",
+            Self::Samples => ", sampled",
+        }
+    }
+}
+
+impl Extreme {
+    /// A figure, where it is reached, and the times at which it holds.
+    pub fn new(value: f64, place: Place, times: HoldsAt) -> Self {
+        Self { value, place, holds_at: Some(times) }
+    }
 }
 
 /// The verifier's figures on a whole plan. They speak of the facets of the object's mesh, the plan's true

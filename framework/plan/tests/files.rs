@@ -147,7 +147,8 @@ fn rich() -> Plan {
     ];
     plan.notes
         .insert(regrasp_api::Slot::Sampler, [("hits".to_owned(), regrasp_api::Figure::one(12.0))].into());
-    let figure = |value| Extreme { value, place: Place { segment: Some(1), ..Default::default() } };
+    let place = || Place { segment: Some(1), ..Default::default() };
+    let figure = |value| Extreme::new(value, place(), HoldsAt::Samples);
     let holds = Holds { friction: figure(0.31), mass: figure(0.4), disturbance: figure(2.5), effort: None };
     plan.certificate = Some(PlanCertificate {
         closure_margin: None,
