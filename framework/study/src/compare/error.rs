@@ -1,5 +1,6 @@
 //! Why a study is refused, or cannot go on.
 
+use super::Worker;
 use regrasp_api::{Refusal, Refuse};
 use regrasp_plan::WriteError;
 use regrasp_run::RunError;
@@ -84,11 +85,16 @@ pub enum StudyError {
         reason: String,
     },
     /// Another process works on the same study.
-    #[error("`{}` is being worked on by another process; wait for it, or give another \
-        folder", folder.display())]
+    #[error(
+        "`{}` is being worked on by {}; wait for it, or give another folder",
+        folder.display(),
+        worker.map_or("another process".into(), |worker| worker.to_string())
+    )]
     Busy {
         /// The folder.
         folder: PathBuf,
+        /// The process and when it began, where that is known.
+        worker: Option<Worker>,
     },
     /// A line of the journal cannot be read.
     #[error("`{}`, line {line}: {reason}; delete the line, and its run will be made again", path.display())]
@@ -131,7 +137,7 @@ impl Refuse for StudyError {
                 Refusal::new("not-empty", self).file(folder.display()).value(entry)
             }
             Self::NoStudy { folder, .. } => Refusal::new("no-study", self).file(folder.display()),
-            Self::Busy { folder } => Refusal::new("busy", self).file(folder.display()),
+            Self::Busy { folder, .. } => Refusal::new("busy", self).file(folder.display()),
             Self::Journal { path, line, .. } => Refusal::new("journal", self)
                 .file(path.display())
                 .line(Some(*line))

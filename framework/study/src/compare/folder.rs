@@ -1,6 +1,7 @@
 //! A study's folder: what it holds, and whether it may be worked on.
 
 use super::journal::Journal;
+use super::worker::WORKER;
 use super::{JOURNAL, RunKey, RunName, RunRecord, STUDY_VERSION, Study, StudyError, journal};
 use regrasp_plan::{Plan, TEMPORARY, write_file, write_json};
 use serde_json::Value;
@@ -177,7 +178,7 @@ fn stranger(folder: &Path) -> Result<Option<String>, StudyError> {
     let mut strangers = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
         let name = entry.map_err(failed)?.file_name().to_string_lossy().into_owned();
-        if name != JOURNAL && !is_temporary(&name) {
+        if name != JOURNAL && name != WORKER && !is_temporary(&name) {
             strangers.push(name);
         }
     }

@@ -1,6 +1,7 @@
 //! The journal: an append-only file with one line for each finished run, which a kill at any moment cannot
 //! spoil.
 
+use super::worker::{AtWork, Worker};
 use super::{RunRecord, StudyError};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write};
@@ -13,6 +14,7 @@ pub const JOURNAL: &str = "runs.jsonl";
 pub(super) struct Journal {
     file: File,
     path: PathBuf,
+    _at_work: AtWork,
 }
 
 impl Journal {
@@ -28,7 +30,10 @@ impl Journal {
         let mut file = opened.map_err(failed)?;
         match file.try_lock() {
             Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(StudyError::Busy { folder: folder.to_owned() }),
+            Err(TryLockError::WouldBlock) => {
+                let worker = Worker::of(folder);
+                return Err(StudyError::Busy { folder: folder.to_owned(), worker });
+            }
             // Some network file systems know no locks: then it is up to the user that nobody else works
             // there.
             Err(TryLockError::Error(_)) => {}
@@ -39,7 +44,8 @@ impl Journal {
         if whole < bytes.len() {
             file.set_len(whole as u64).map_err(failed)?;
         }
-        Ok((Self { file, path }, records))
+        let _at_work = AtWork::begin(folder);
+        Ok((Self { file, path, _at_work }, records))
     }
 
     /// Adds a finished run.
@@ -150,7 +156,10 @@ mod tests {
     fn two_cannot_work_on_one_journal() {
         let folder = tempfile::tempdir().unwrap();
         let first = Journal::open(folder.path()).unwrap();
-        assert!(matches!(Journal::open(folder.path()), Err(StudyError::Busy { .. })));
+        let Err(error) = Journal::open(folder.path()) else { panic!("two at once") };
+        let text = error.to_string();
+        let named = format!("by process {} since 20", std::process::id());
+        assert!(matches!(error, StudyError::Busy { .. }) && text.contains(&named), "{text}");
         drop(first);
         assert!(Journal::open(folder.path()).is_ok());
     }

@@ -31,7 +31,7 @@ pub fn merge(folders: &[PathBuf], output: &Path) -> Result<Study, StudyError> {
                 folder.keep(&study, key, record, None)?;
             }
         }
-        copy_plans(&part.folder, output)?;
+        copy_plans(part, output)?;
     }
     folder.finish(&study)?;
     Ok(study)
@@ -106,9 +106,9 @@ fn whole(parts: &[Part]) -> Study {
     study
 }
 
-/// Copies the plans that a part keeps.
-fn copy_plans(from: &Path, to: &Path) -> Result<(), StudyError> {
-    let (from, to) = (from.join(super::PLANS), to.join(super::PLANS));
+/// Copies the plans that a part keeps, each of which must be of one of the part's hands.
+fn copy_plans(part: &Part, to: &Path) -> Result<(), StudyError> {
+    let (from, to) = (part.folder.join(super::PLANS), to.join(super::PLANS));
     let failed = |path: &Path, source: io::Error| StudyError::Io { path: path.to_owned(), source };
     let entries = match fs::read_dir(&from) {
         Ok(entries) => entries,
@@ -122,7 +122,20 @@ fn copy_plans(from: &Path, to: &Path) -> Result<(), StudyError> {
             continue;
         };
         let bytes = fs::read(&path).map_err(|error| failed(&path, error))?;
+        check_hand(part, &path)?;
         write_file(&to.join(name), |out| out.write_all(&bytes))?;
     }
     Ok(())
+}
+
+/// Refuses a kept plan of a hand that is in none of the part's scenarios.
+fn check_hand(part: &Part, path: &Path) -> Result<(), StudyError> {
+    let named = |reason: String| refusal(part, &format!("`{}`: {reason}", path.display()));
+    let plan = regrasp_plan::read(path).map_err(|error| named(error.to_string()))?;
+    let hand = &plan.scenario.problem.hand;
+    if part.study.scenarios.iter().any(|scenario| scenario.problem.hand == *hand) {
+        return Ok(());
+    }
+    let reason = format!("the plan is of the hand `{}`, which no scenario of the study has", hand.name);
+    Err(named(reason))
 }

@@ -32,6 +32,7 @@ pub mod statistics;
 mod study;
 pub mod summary;
 mod timed;
+mod worker;
 
 pub use analysis::*;
 pub use begun::BEGUN;
@@ -51,3 +52,4 @@ pub use record::*;
 pub use results::*;
 pub use study::*;
 pub use timed::{CLEARANCE, FRAMEWORK, PERIOD};
+pub use worker::Worker;

@@ -2,7 +2,8 @@
 
 use super::number::{milliseconds, p_text, ratio_text};
 use crate::compare::statistics::{ALPHA, Estimate};
-use crate::compare::{Cell, Compared, Figure};
+use crate::compare::{Cell, Compared, Figure, RunStatus};
+use std::collections::BTreeSet;
 use std::iter;
 
 /// Fewer pairs than this cannot reach 5 %, whatever they show: even if all point one way, p is `tests` · 2 /
@@ -14,8 +15,33 @@ fn fewest_pairs(tests: usize) -> usize {
 /// Up to so many variants are named one by one.
 const FEW: usize = 4;
 
-/// The result of a scenario in a sentence or two; `name` marks the names of variants.
+/// The result of a scenario in a sentence or two; `name` marks the names of variants. Plans that do not verify
+/// come first: what took how long says nothing before that.
 pub fn finding(row: &[Cell<'_>], name: &dyn Fn(&str) -> String) -> String {
+    let rejected = row.iter().filter_map(|cell| unverified(cell, name));
+    rejected.chain([times_and_shares(row, name)]).collect::<Vec<_>>().join(" ")
+}
+
+/// That not all plans of a variant verify, and by which checks; `None` where all do.
+fn unverified(cell: &Cell<'_>, name: &dyn Fn(&str) -> String) -> Option<String> {
+    let all = cell.count(RunStatus::Solved);
+    let wrong: Vec<_> =
+        cell.runs.iter().filter(|run| run.status == RunStatus::Solved && !run.verified).collect();
+    if wrong.is_empty() {
+        return None;
+    }
+    let checks =
+        wrong.iter().filter_map(|run| run.certified.as_ref()).flat_map(|figures| &figures.failed_checks);
+    let checks: BTreeSet<&str> = checks.map(String::as_str).collect();
+    let by = match checks.is_empty() {
+        true => String::new(),
+        false => format!(" ({})", checks.into_iter().collect::<Vec<_>>().join(", ")),
+    };
+    let (wrong, name) = (wrong.len(), name(&cell.variant.name));
+    Some(format!("{wrong} of the {all} plans of {name} do not verify{by}."))
+}
+
+fn times_and_shares(row: &[Cell<'_>], name: &dyn Fn(&str) -> String) -> String {
     let Some((first, others)) = row.split_first() else { return "There are no runs yet.".into() };
     let compared: Vec<(&Cell<'_>, &Compared)> =
         others.iter().filter_map(|cell| Some((cell, cell.compared.as_ref()?))).collect();

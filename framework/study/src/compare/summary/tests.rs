@@ -102,3 +102,22 @@ fn runs_of_unequal_seeds_are_paired_by_seed() {
     let paired = &rows[0][1].compared.as_ref().unwrap().paired;
     assert_eq!((paired.both, paired.time_test.pairs), (8, 0));
 }
+
+#[test]
+fn plans_that_do_not_verify_are_told_first() {
+    let study = study(&["rlg", "hasty"]);
+    let mut records = runs(&study, |key| Some(seconds(key)));
+    for run in records.iter_mut().filter(|run| run.variant == "hasty" && run.seed < 3) {
+        run.verified = false;
+        if let Some(figures) = &mut run.certified {
+            figures.failed_checks = vec!["slip".into(), "closure".into()];
+        }
+    }
+    let found = findings(&study, &records).remove(0);
+    assert!(
+        found.starts_with("3 of the 12 plans of hasty do not verify (closure, slip). Against"),
+        "{found}"
+    );
+    let sound = findings(&study, &runs(&study, |key| Some(seconds(key)))).remove(0);
+    assert!(!sound.contains("do not verify"), "{sound}");
+}
