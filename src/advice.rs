@@ -4,6 +4,7 @@ use crate::api::{Reason, Slot};
 use crate::plan::{Statistics, StoppedBy};
 use crate::planner::Stuck;
 use crate::run::Run;
+use crate::run::scenario::Scenario;
 
 /// What is worth trying after a run that is not solved, from where it got stuck and what it rejected most;
 /// options of the command line stand in backquotes.
@@ -35,6 +36,35 @@ pub fn advice(run: &Run) -> String {
         }
         _ => format!("{}, try another `--seed`, or add a goal half way", more_budget(run.stopped_by)),
     }
+}
+
+/// Coefficients of friction that [`needed_friction`] tries.
+const FRICTIONS: [f64; 11] = [0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5];
+/// The nodes that each of them may generate.
+const NODES_OF_A_TRY: usize = 64;
+/// The time (s) that each of them may take.
+const TIME_OF_A_TRY: f64 = 2.0;
+
+/// Where a run found no grasp at start or goal that is stable enough: the least of some coefficients of friction
+/// at which grasps are found there, the rest of the problem being as it is; `None` where stability is not what
+/// most grasps lack, or no friction helps.
+///
+/// It tries them, in a second or two each at most.
+pub fn needed_friction(scenario: &Scenario, run: &Run) -> Option<f64> {
+    let lacks_grasps = |run: &Run| matches!(run.outcome.stuck, Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)));
+    let cause = most_frequent(&run.outcome.statistics);
+    if !lacks_grasps(run) || !matches!(cause, Some(Reason::Stability | Reason::Liftable)) {
+        return None;
+    }
+    let mut other = scenario.clone();
+    let budget = &mut other.problem.limits.budget;
+    budget.max_nodes = budget.max_nodes.min(NODES_OF_A_TRY);
+    budget.time_limit = Some(TIME_OF_A_TRY);
+    let given = scenario.problem.object.friction;
+    FRICTIONS.into_iter().filter(|friction| *friction > given).find(|&friction| {
+        (other.problem.object.friction, other.object.friction) = (friction, friction);
+        crate::solve(&other, 0).is_ok_and(|run| !lacks_grasps(&run))
+    })
 }
 
 /// How to raise the budget that ended the run.

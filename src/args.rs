@@ -3,6 +3,7 @@
 use crate::numbers::{extent, objective, seconds, whole};
 use crate::outputs::OverwriteArgs;
 use clap::{Args, Parser, Subcommand};
+use regrasp::api::Level;
 use regrasp::run::{Extent, Objective};
 use std::path::PathBuf;
 
@@ -41,6 +42,12 @@ pub enum Command {
     Completions(crate::completions::CompletionsArgs),
     Man(crate::man::ManArgs),
     Reference(crate::reference::ReferenceArgs),
+}
+
+/// A level of messages.
+fn level(text: &str) -> Result<Level, String> {
+    let level = Level::ALL.into_iter().find(|level| level.name() == text);
+    level.ok_or_else(|| "it must be `warning`, `info` or `debug`".into())
 }
 
 impl Command {
@@ -86,7 +93,8 @@ pub struct PlanArgs {
     /// Fill a slot with another plugin; can be repeated.
     #[arg(long = "use", value_name = "SLOT=ID")]
     pub uses: Vec<String>,
-    /// Change a setting of the plugin in a slot; the value is TOML; can be repeated.
+    /// Change a setting of the plugin in a slot; the value is TOML, and nothing behind the `=` unsets an
+    /// option; can be repeated.
     #[arg(long = "set", value_name = "SLOT.KEY=VALUE")]
     pub sets: Vec<String>,
     #[command(flatten)]
@@ -125,13 +133,17 @@ pub struct PlanArgs {
     /// plan.
     #[arg(long)]
     pub view_graph: bool,
-    /// Hold every call of a plugin against the laws of its role; the first breach ends the run and names
-    /// plugin, law and call. The run takes several times as long.
+    /// Hold the calls of plugins against the laws of their roles; the first breach ends the run and names
+    /// plugin, law and call. The run takes up to five times as long. A program built for debugging looks at a
+    /// share of the calls unasked.
     #[arg(long)]
     pub audit: bool,
     /// Audit, and write what broke a law to this file: the call with its input, and the whole problem.
     #[arg(long, value_name = "FILE")]
     pub audit_save: Option<PathBuf>,
+    /// Print on standard error what plugins say, up to this level: `warning`, `info` or `debug`.
+    #[arg(long, value_name = "LEVEL", default_value = "warning", value_parser = level)]
+    pub log: Level,
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub json: bool,

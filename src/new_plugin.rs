@@ -159,7 +159,7 @@ impl Draft {
 `{{folder}}` has the plugin `{{id}}`; it works as it is:
     cd {{folder}}
     cargo test                  # the laws of its role
-    cargo build --release       # {{library}}
+    cargo build --release --workspace    # {{library}}
     regrasp plan sphere --load {{library}} --use {{slot}}={{name}}
     regrasp compare sphere --load {{library}} --vary {{slot}}={{default}},{{name}} -o study
 The plugin is in `src/lib.rs`: make it yours, and do the same again.

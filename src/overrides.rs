@@ -60,9 +60,13 @@ fn set(choices: &mut Choices, text: &str) -> Result<(), Failure> {
         let example = "such as sampler.poses=200; `regrasp plugins ID` lists the keys";
         Failure::bad_input(format!("`--set {text}` is not of the form SLOT.KEY=VALUE, {example}"))
     };
-    let (path, value) = text.split_once('=').filter(|(_, value)| !value.is_empty()).ok_or_else(form)?;
+    let (path, value) = text.split_once('=').ok_or_else(form)?;
     let (slot, key) = split_slot(path).map_err(|error| refuse("set", text, &error))?.ok_or_else(form)?;
-    let value = parse(value).map_err(|reason| Failure::bad_input(format!("`--set {text}`: {reason}")))?;
+    let value = match value {
+        // Nothing behind the `=` unsets an option, also one that has a default.
+        "" => Value::Null,
+        value => parse(value).map_err(|reason| Failure::bad_input(format!("`--set {text}`: {reason}")))?,
+    };
     choices.set(slot, key, value);
     Ok(())
 }
@@ -80,19 +84,19 @@ pub fn split_slot(path: &str) -> Result<Option<(Slot, &str)>, HostError> {
     }
 }
 
-/// A value as TOML reads it; what is no TOML value is taken as a text, so that quotes can be omitted.
+/// A value as TOML reads it; what is no TOML value is taken as a text, so that quotes can be omitted. So is
+/// what TOML reads as no finite number: `how=nan` means the word where `how` is one of some words, and is
+/// refused where it is a number.
 pub fn parse(text: &str) -> Result<Value, String> {
     let table: Result<toml::Table, _> = toml::from_str(&format!("value = {text}"));
     let value = match table {
         Ok(mut table) => table.remove("value").unwrap_or(toml::Value::String(text.to_owned())),
         Err(_) => toml::Value::String(text.to_owned()),
     };
-    if let toml::Value::Float(number) = value
-        && !number.is_finite()
-    {
-        return Err(format!("{text} is outside the finite numbers"));
+    match value {
+        toml::Value::Float(number) if !number.is_finite() => Ok(Value::String(text.trim().to_owned())),
+        value => serde_json::to_value(value).map_err(|error| error.to_string()),
     }
-    serde_json::to_value(value).map_err(|error| error.to_string())
 }
 
 pub fn refuse(option: &str, text: &str, error: &HostError) -> Failure {
@@ -111,7 +115,8 @@ mod tests {
         assert_eq!(parse("[1, 2]"), Ok(json!([1, 2])));
         assert_eq!(parse("true"), Ok(json!(true)));
         assert_eq!(parse("some-word"), Ok(json!("some-word")));
-        assert!(parse("nan").is_err() && parse("inf").is_err());
+        assert_eq!(parse("nan"), Ok(json!("nan")));
+        assert_eq!(parse("-inf"), Ok(json!("-inf")));
     }
 
     #[test]
@@ -128,8 +133,9 @@ mod tests {
         let mut choices = Choices::default();
         assert!(use_plugin(&mut choices, "sampler").is_err());
         assert!(set(&mut choices, "sampler.tries").is_err());
-        assert!(set(&mut choices, "sampler.tries=nan").is_err());
         assert!(set(&mut choices, "sampler.tries=4").is_ok());
         assert_eq!(choices.choice(Slot::Sampler).settings["tries"], json!(4));
+        assert!(set(&mut choices, "sampler.tries=").is_ok());
+        assert_eq!(choices.choice(Slot::Sampler).settings["tries"], Value::Null);
     }
 }

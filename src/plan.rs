@@ -7,9 +7,10 @@ use crate::progress::Line;
 use crate::terminal::printable;
 use crate::watch::Watch;
 use crate::{Failure, overrides, plugins, report, say, say_json, view};
+use regrasp::api::{Level, Tally};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
-use regrasp::run::{Improved, Run, RunOptions, Setup, scenario};
+use regrasp::run::{Depth, Improved, Run, RunOptions, Setup, scenario};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -27,8 +28,8 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     let line = Line::new();
     let (seed, threads) = (args.seed, usize::from(args.threads));
     let options = RunOptions { seed, threads, stop: &watch, clock: &watch, progress: &line };
-    let ran = if is_audited(args) {
-        audited(args, &setup, &options).map(|ran| (ran, None))
+    let ran = if let Some(depth) = depth(args) {
+        audited(args, &setup, &options, depth).map(|ran| (ran, None))
     } else if let Some(extent) = args.improve {
         let improved = setup.improve(args.optimise.unwrap_or_default(), extent, &options);
         improved.map(|Improved { run, course }| (run, Some(course))).map_err(Failure::refused)
@@ -37,6 +38,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     };
     line.finish();
     let (ran, course) = ran?;
+    pass_on(&ran.outcome.tally, args.log);
     let saved = save(args.output.as_deref(), &ran)?;
     if let Some(path) = &args.grasps {
         let count = kept::save(path, &scenario, &setup, &ran)?;
@@ -66,14 +68,22 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     ending(&ran, &summary)
 }
 
-/// Whether the run is under audit: on demand alone, as it takes several times as long.
-fn is_audited(args: &PlanArgs) -> bool {
-    args.audit || args.audit_save.is_some()
+/// How deeply the run is audited, if at all: on demand, as it takes several times as long; a program built for
+/// debugging looks at a share of the calls whenever plugins are loaded, which is when somebody writes one.
+fn depth(args: &PlanArgs) -> Option<Depth> {
+    let asked = args.audit || args.audit_save.is_some();
+    let unasked = cfg!(debug_assertions) && !args.libraries.load.is_empty();
+    if asked { Some(Depth::Full) } else { unasked.then_some(Depth::Sparse) }
 }
 
 /// A run under audit; what broke a law is kept where that was asked for.
-fn audited(args: &PlanArgs, setup: &Setup<'_>, options: &RunOptions<'_>) -> Result<Run, Failure> {
-    let (ran, case) = setup.run_audited(options);
+fn audited(
+    args: &PlanArgs,
+    setup: &Setup<'_>,
+    options: &RunOptions<'_>,
+    depth: Depth,
+) -> Result<Run, Failure> {
+    let (ran, case) = setup.run_audited(options, depth);
     let saved = match (&args.audit_save, case) {
         (Some(path), Some(case)) => {
             let text = format!("{:#}\n", case.file);
@@ -91,6 +101,15 @@ fn listed(lines: &[String]) -> String {
     match lines.is_empty() {
         true => " nothing".into(),
         false => lines.iter().map(|line| format!("\n  {line}")).collect(),
+    }
+}
+
+/// Prints on standard error what plugins said, up to a level.
+fn pass_on(tally: &Tally, most: Level) {
+    for message in tally.messages().iter().filter(|message| message.level <= most) {
+        let line = format!("{} ({}): {}", message.level.name(), message.slot.name(), message.text);
+        // A reader of standard error that has gone away is no failure.
+        let _ = writeln!(io::stderr(), "{}", printable(&line));
     }
 }
 

@@ -7,7 +7,7 @@ use crate::verify::check_table;
 use regrasp::api::{Reason, Slot, Tally};
 use regrasp::host::Choices;
 use regrasp::page::place_text;
-use regrasp::plan::{Extreme, Plan, SegmentKind, Statistics};
+use regrasp::plan::{Extreme, HoldsAt, Plan, SegmentKind, Statistics};
 use regrasp::planner::Status;
 use regrasp::run::scenario::Scenario;
 use regrasp::run::{Course, Run, RunOptions};
@@ -125,19 +125,19 @@ impl Summary<'_> {
             duration(self.run).unwrap_or(0.0)
         );
         let Some(certificate) = &plan.certificate else { return text };
-        // Clearance is a bound over all times; the others are what the verifier's samples show.
         let mut figure = |name: &str, extreme: &Option<Extreme>, scale: f64, unit: &str| {
             if let Some(extreme) = extreme {
                 let (value, place) =
                     (extreme.value * scale, place_text(&extreme.place, &self.scenario.problem));
-                let least = if name == "clearance" { "at least " } else { "" };
-                text += &format!("  {name:<13} {least}{value:.3}{unit} ({place})\n");
+                let least = if name == "clearance" || name == "margin" { "at least " } else { "" };
+                let times = extreme.holds_at.map_or("", HoldsAt::remark);
+                text += &format!("  {name:<13} {least}{value:.3}{unit}{times} ({place})\n");
             }
         };
         figure("margin", &certificate.closure_margin, 1.0, "");
         figure("clearance", &certificate.clearance, 1e3, " mm");
-        figure("slip", &certificate.slip, 1e3, " mm, sampled");
-        figure("closure", &certificate.closure_residual, 1e6, " µm, sampled");
+        figure("slip", &certificate.slip, 1e3, " mm");
+        figure("closure", &certificate.closure_residual, 1e6, " µm");
         text += &holds_lines(certificate.holds.as_ref(), &self.scenario.problem);
         text + &self.remarks()
     }
@@ -207,7 +207,14 @@ impl Summary<'_> {
         let reason = self.run.why_not_solved().unwrap_or_default();
         let kept = self.saved.map(|path| format!("; what was reached is kept as `{}`", path.display()));
         let rejections = rejections(&outcome.statistics);
-        let advice = regrasp::advice(self.run);
+        let given = self.scenario.problem.object.friction;
+        let advice = match regrasp::needed_friction(self.scenario, self.run) {
+            Some(needed) => format!(
+                "most grasps are not stable: grasps are found at friction {needed}, {given} is given; raise \
+                    `object.friction` if the surfaces allow it"
+            ),
+            None => regrasp::advice(self.run),
+        };
         let warned = outcome.warnings.iter().map(|warning| format!("  first look at  {warning}\n"));
         let warned: String = warned.collect();
         format!("{reason}{}\n{warned}  to try  {advice}\n{rejections}", kept.unwrap_or_default())

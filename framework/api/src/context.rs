@@ -29,7 +29,47 @@ pub struct Tally {
     calls: [u64; Slot::ALL.len()],
     rejections: [[u64; Reason::ALL.len()]; Slot::ALL.len()],
     notes: Vec<Note>,
+    messages: Vec<Message>,
 }
+
+/// How much a message matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// The plan may be worse than it could be.
+    Warning,
+    /// What a user may want to know.
+    Info,
+    /// What its author wants to know.
+    Debug,
+}
+
+impl Level {
+    /// Every level, the most important first.
+    pub const ALL: [Self; 3] = [Self::Warning, Self::Info, Self::Debug];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Warning => "warning",
+            Self::Info => "info",
+            Self::Debug => "debug",
+        }
+    }
+}
+
+/// What the plugin in a slot said.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// The slot.
+    pub slot: Slot,
+    /// How much it matters.
+    pub level: Level,
+    /// The text.
+    pub text: String,
+}
+
+/// So many messages of a run are kept, the first ones.
+pub const MOST_MESSAGES: usize = 1000;
 
 /// What the plugin in a slot noted under a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +98,11 @@ impl Tally {
         &self.notes
     }
 
+    /// What plugins said, in the order of the calls that count; the first [`MOST_MESSAGES`].
+    pub fn messages(&self) -> &[Message] {
+        &self.messages
+    }
+
     fn note(&mut self, slot: Slot, name: &'static str, figure: Figure) {
         match self.notes.iter_mut().find(|note| (note.slot, note.name) == (slot, name)) {
             Some(note) => note.figure = note.figure.and(figure),
@@ -65,7 +110,7 @@ impl Tally {
         }
     }
 
-    /// What was counted since `earlier`, a copy of these counts; of notes it says nothing.
+    /// What was counted since `earlier`, a copy of these counts; of notes and messages it says nothing.
     #[must_use]
     pub fn since(&self, earlier: &Self) -> Self {
         let mut since = self.clone();
@@ -73,6 +118,7 @@ impl Tally {
         let then = earlier.rejections.iter().flatten();
         since.rejections.iter_mut().flatten().zip(then).for_each(|(now, then)| *now -= then);
         since.notes.clear();
+        since.messages.clear();
         since
     }
 
@@ -82,6 +128,8 @@ impl Tally {
         let theirs = other.rejections.iter().flatten();
         self.rejections.iter_mut().flatten().zip(theirs).for_each(|(a, b)| *a += b);
         other.notes.iter().for_each(|note| self.note(note.slot, note.name, note.figure));
+        let room = MOST_MESSAGES.saturating_sub(self.messages.len());
+        self.messages.extend(other.messages.iter().take(room).cloned());
     }
 }
 
@@ -153,6 +201,17 @@ impl<'a> Context<'a> {
             self.tally.note(slot, name, Figure::one(value));
         }
     }
+
+    /// Says something in words: the program prints it on standard error where `--log` asks for its level. A
+    /// plugin prints nothing itself.
+    ///
+    /// As with notes, what is said in a call whose result is thrown away is not said at all, so that the
+    /// order depends on no thread.
+    pub fn log(&mut self, slot: Slot, level: Level, text: impl Into<String>) {
+        if self.tally.messages.len() < MOST_MESSAGES {
+            self.tally.messages.push(Message { slot, level, text: text.into() });
+        }
+    }
 }
 
 #[cfg(test)]
@@ -190,6 +249,18 @@ mod tests {
         let found: Vec<_> = sum.notes().iter().map(|note| (note.name, note.figure.count)).collect();
         assert_eq!(found, [("tries", 2), ("slippery", 2)]);
         assert_eq!(sum.rejections(Slot::Sampler, Reason::Other), 2);
+    }
+
+    #[test]
+    fn messages_are_kept_in_order_and_bounded() {
+        let mut context = Context::seeded(0);
+        (0..2 * MOST_MESSAGES).for_each(|k| context.log(Slot::Sampler, Level::Info, k.to_string()));
+        let mut sum = Tally::default();
+        (0..2).for_each(|_| sum.add(&context.tally));
+        assert_eq!(sum.messages().len(), MOST_MESSAGES);
+        assert_eq!((sum.messages()[0].text.as_str(), sum.messages()[1].text.as_str()), ("0", "1"));
+        assert!(sum.since(&Tally::default()).messages().is_empty());
+        assert!(Level::Warning < Level::Debug);
     }
 
     #[test]

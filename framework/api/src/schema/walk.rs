@@ -13,25 +13,26 @@ pub fn check_schema(value: &Value, schema: &Value) -> Result<(), Departure> {
     Walk { root: schema }.check(value, schema, &KeyPath::default())
 }
 
-/// Adds the schema's defaults for keys that `settings` leaves out, in tables within it too.
+/// Adds the schema's defaults for keys that `settings` leaves out, in tables within it too. A key that is
+/// there with `null` stays: so an option that has a default is unset.
 pub fn fill_defaults(settings: &mut Map<String, Value>, schema: &Value) {
     let properties = schema.get("properties").and_then(Value::as_object);
     for (key, property) in properties.into_iter().flatten() {
         if let Some(default) = property.get("default") {
-            fill(settings.entry(key.clone()).or_insert(Value::Null), default);
+            fill(settings, key, default);
         }
     }
 }
 
 /// The default where nothing is given, and its keys where a table is.
-fn fill(given: &mut Value, default: &Value) {
-    match (given, default) {
-        (Value::Object(given), Value::Object(default)) => {
-            for (key, value) in default {
-                fill(given.entry(key.clone()).or_insert(Value::Null), value);
-            }
+fn fill(settings: &mut Map<String, Value>, key: &str, default: &Value) {
+    match (settings.get_mut(key), default) {
+        (None, default) => {
+            settings.insert(key.to_owned(), default.clone());
         }
-        (given @ Value::Null, default) => *given = default.clone(),
+        (Some(Value::Object(given)), Value::Object(default)) => {
+            default.iter().for_each(|(key, value)| fill(given, key, value));
+        }
         _ => {}
     }
 }
