@@ -17,6 +17,7 @@ mod new;
 mod new_plugin;
 mod numbers;
 mod object;
+mod output;
 mod outputs;
 mod overrides;
 mod plan;
@@ -47,6 +48,7 @@ use regrasp as _;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    output::keep();
     let done = match &arguments.command {
         Command::Plan(args) => plan::run(args),
         Command::Verify(args) => verify::run(args),
@@ -85,7 +87,7 @@ static ANSWERED: AtomicBool = AtomicBool::new(false);
 /// Writes to standard output; a reader that has gone away, as in `regrasp plugins | head`, is no failure.
 fn say(text: &str) -> Result<(), Failure> {
     ANSWERED.store(true, Ordering::Relaxed);
-    let mut out = io::stdout().lock();
+    let mut out = output::standard();
     match out.write_all(terminal::printable(text).as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::bad_input(format!("cannot write to standard output: {error}")))

@@ -76,7 +76,7 @@ pub fn run(args: &ObjectArgs) -> Result<(), Failure> {
     if let Some(path) = &args.output {
         let bytes = regrasp::export::stl(&mesh);
         if outputs::is_standard(path) {
-            return std::io::stdout().write_all(&bytes).map_err(Failure::bad_input);
+            return crate::output::standard().write_all(&bytes).map_err(Failure::bad_input);
         }
         regrasp::plan::write_file(path, |out| out.write_all(&bytes)).map_err(Failure::bad_input)?;
     }

@@ -149,7 +149,7 @@ fn save(output: Option<&Path>, run: &Run) -> Result<Option<PathBuf>, Failure> {
     let (Some(wished), Some(plan)) = (output, &run.plan) else { return Ok(None) };
     let path = match (run.outcome.status, run.is_verified()) {
         (Status::Solved, true) if outputs::is_standard(wished) => {
-            let mut out = io::stdout().lock();
+            let mut out = crate::output::standard();
             regrasp::plan::write_json(plan, &mut out).map_err(Failure::bad_input)?;
             return Ok(None);
         }

@@ -54,7 +54,7 @@ pub fn run(args: &ViewArgs) -> Result<(), Failure> {
 fn write_page(plan: &Plan, extras: &Extras, output: &Path) -> Result<usize, String> {
     let page = regrasp::view::page(plan, extras).map_err(|error| error.to_string())?;
     if outputs::is_standard(output) {
-        std::io::stdout().write_all(page.as_bytes()).map_err(|error| error.to_string())?;
+        crate::output::standard().write_all(page.as_bytes()).map_err(|error| error.to_string())?;
         return Ok(page.len());
     }
     let put = |writer: &mut dyn Write| writer.write_all(page.as_bytes());

@@ -61,3 +61,14 @@ fn a_panic_at_the_end_of_a_plugins_life_spoils_no_result() {
     assert_eq!(said.code, Some(0), "{said:?}");
     assert!(said.out.contains("solved, verified"), "{said:?}");
 }
+
+#[cfg(unix)]
+#[test]
+fn what_a_plugin_prints_spoils_no_json() {
+    let library = faulty();
+    let library = library.to_str().expect("the target folder is UTF-8");
+    let said = regrasp(&["plan", "sphere", "--load", library, "--use", "contact-model=chatters", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&said.out).expect("one JSON object");
+    assert_eq!((said.code, &json["status"]), (Some(0), &"solved".into()));
+    assert!(said.err.contains("chatter"), "it is not lost: {said:?}");
+}

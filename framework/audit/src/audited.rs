@@ -34,6 +34,8 @@ impl<'a, T: ?Sized> Audited<'a, T> {
         // What a panic left behind is no answer of the plugin's.
         if pending_fault().is_none()
             && let Err(fault) = resting(|| check(self.inner, &answer))
+            // Nor is a call that panicked while the laws were tried.
+            && pending_fault().is_none()
         {
             report_fault(self.auditor.keep(self.slot, call, fault, input()));
         }
@@ -95,6 +97,9 @@ impl<'a, T: ?Sized> Audited<'a, T> {
             }
             check(self.inner, &answer, &twin)
         });
+        if pending_fault().is_some() {
+            return Ok(answer);
+        }
         kept.map_err(|fault: Broken| self.auditor.keep(self.slot, call, fault, input(&fresh)))?;
         Ok(answer)
     }

@@ -18,6 +18,7 @@ regrasp_abi::export_plugins!(
     NO_SCHEMA,
     NOT_DROPPED,
     ABORTS,
+    CHATTERS,
 );
 
 /// Runs while the library is loaded, before anything of it is called.
@@ -54,6 +55,24 @@ const CONE: Entry = entry(
     "contact-model/faulty",
     &[Slot::ContactModel],
     Build::ContactModel(|_, _| Ok(Box::<LateCone>::default())),
+);
+
+/// Prints, which no plugin should.
+struct Chatters;
+impl ContactModel for Chatters {
+    fn cone(&self, _: FingerIndex, _: &Contact, mu: f64) -> Cone<'_> {
+        print!("chatter");
+        Cone::Elliptic { mu, gamma: 0.0 }
+    }
+    fn fewest_contacts(&self) -> usize {
+        println!("chatter");
+        3
+    }
+}
+const CHATTERS: Entry = entry(
+    "contact-model/chatters",
+    &[Slot::ContactModel],
+    Build::ContactModel(|_, _| Ok(Box::new(Chatters))),
 );
 
 struct Panics;
