@@ -71,6 +71,54 @@ def slack(points, normals, mu, gamma=0.0, load=None, most=None):
     return solved.x[-1]
 
 
+def edges_of(cone, spins):
+    """The edges (t1, t2, torsion) of a recorded cone; of a round one 64 on its surface, without torsion."""
+    if "elliptic" in cone:
+        mu = cone["elliptic"]["mu"]
+        return [(mu * np.cos(a), mu * np.sin(a), 0.0) for a in np.arange(64) * 2 * np.pi / 64]
+    edges = [(*edge["tangential"], edge["torsion"]) for edge in cone["polyhedral"]]
+    if not spins:
+        return edges
+    flat = [edge for edge in edges if edge[2] == 0.0]
+    for a in (edge for edge in edges if edge[2] > 0.0):
+        for b in (edge for edge in edges if edge[2] < 0.0):
+            s = a[2] / (a[2] - b[2])
+            flat.append(tuple(np.array(a) + s * (np.array(b) - np.array(a))))
+    return flat
+
+
+def edge_wrenches(point, normal, edges, length):
+    """The wrenches of edges at a point (over the length) with this outward normal."""
+    n = -np.asarray(normal)
+    t1 = np.cross(n, [1.0, 0.0, 0.0] if abs(n[0]) < 0.6 else [0.0, 1.0, 0.0])
+    t1 /= np.linalg.norm(t1)
+    t2 = np.cross(n, t1)
+    forces = [n + x * t1 + y * t2 for x, y, _ in edges]
+    return [
+        np.concatenate([f, np.cross(point, f) + n * (m / length)]) for f, (_, _, m) in zip(forces, edges)
+    ]
+
+
+def spanning(wrenches):
+    """The largest t with shares λ ≥ t of all wrenches that sum to 1 and balance; closure where t > 0."""
+    W = np.array(wrenches).T
+    n = W.shape[1] if W.size else 0
+    if n < 7 or np.linalg.matrix_rank(W, tol=1e-9) < 6:
+        return -np.inf
+    equal = np.vstack([np.hstack([W, np.zeros((6, 1))]), np.append(np.ones(n), 0.0)])
+    above = np.hstack([-np.eye(n), np.ones((n, 1))])
+    b = np.concatenate([np.zeros(6), [1.0], np.zeros(n)])
+    q = np.zeros(n + 1)
+    q[-1] = -1.0
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    A = sparse.csc_matrix(np.vstack([equal, above]))
+    P = sparse.csc_matrix((n + 1, n + 1))
+    cones = [clarabel.ZeroConeT(7), clarabel.NonnegativeConeT(n)]
+    solved = clarabel.DefaultSolver(P, q, A, b, cones, settings).solve()
+    return solved.x[-1] if "Solved" in str(solved.status) else -np.inf
+
+
 def margin_at_most(points, normals, mu, gamma=0.0, tries=4000, seed=1):
     """An upper bound of the closure margin: the least of max_i h_i(w) over many unit w."""
     random = np.random.default_rng(seed)

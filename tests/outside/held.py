@@ -23,6 +23,7 @@ class Held:
         claims, friction = self.plan["claims"], self.problem["object"]["friction"]
         cone = claims["contact"]["cone"]
         if cone is None:
+            self.own_cones(claims)
             return
         self.faults.note("claims", not 0 <= cone["mu"] <= friction, cone["mu"], "friction")
         off = np.linalg.norm(np.array(claims["margin"]["center_O"]) - self.center) + abs(
@@ -36,6 +37,28 @@ class Held:
                     t = self.stable(s, q, claims["criterion"])
                     self.faults.note("stability", t <= 1e-8, t, (s, k))
                 self.forces(s, k, q, cone["mu"])
+
+    def own_cones(self, claims):
+        """Closure where contacts have cones of their own; other criteria are left out there."""
+        cones, friction = claims["contact"].get("cones", []), self.problem["object"]["friction"]
+        if claims["criterion"] != "closure" or not cones:
+            return
+        for cone in cones:
+            most = max(np.hypot(x, y) for x, y, _ in grasps.edges_of(cone, False))
+            self.faults.note("claims", not most <= friction * (1 + 1e-9), most, "friction of a cone")
+        for s, segment in enumerate(self.segments):
+            moving, last = segment.get("finger"), len(segment["states"]) - 1
+            for k, q in enumerate(segment["states"]):
+                if k not in (0, last) and k % 5:
+                    continue
+                wrenches = []
+                for f, c in enumerate(q["contacts"]):
+                    if c is not None and f != moving:
+                        edges = grasps.edges_of(cones[q["cones"][f]], moving is None)
+                        point = (np.array(c["point_O"]) - self.center) / self.length
+                        wrenches += grasps.edge_wrenches(point, c["normal_O"], edges, self.length)
+                t = grasps.spanning(wrenches)
+                self.faults.note("stability", not t > 1e-9, t, (s, k))
 
     def stable(self, s, q, criterion):
         points, normals, mu, gamma = self.grasp(s, q)
