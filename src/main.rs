@@ -35,6 +35,7 @@ mod terminal;
 mod verify;
 mod view;
 mod watch;
+mod watchdog;
 
 use args::{Arguments, Command};
 use clap::Parser;

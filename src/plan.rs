@@ -6,7 +6,7 @@ use crate::outputs::{self, Kind};
 use crate::progress::Line;
 use crate::terminal::printable;
 use crate::watch::Watch;
-use crate::{Failure, overrides, plugins, report, say, say_json, view};
+use crate::{Failure, overrides, plugins, report, say, say_json, view, watchdog};
 use regrasp::api::{Level, Tally};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
@@ -25,6 +25,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     }
     let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::refused)?;
     let watch = Watch::start(scenario.problem.limits.budget.time_limit);
+    watchdog::watch(scenario.problem.limits.budget.time_limit, &watch.heard, &setup, &registry);
     let line = Line::new();
     let (seed, threads) = (args.seed, usize::from(args.threads));
     let options = RunOptions { seed, threads, stop: &watch, clock: &watch, progress: &line };

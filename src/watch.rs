@@ -1,5 +1,6 @@
 //! The program's clock and what stops it: Ctrl-C, its like, and the time limit.
 
+use crate::watchdog::Heard;
 use regrasp::Stopwatch;
 use regrasp::api::Interrupt;
 use regrasp::plan::StoppedBy;
@@ -54,31 +55,40 @@ fn listen() {
 }
 
 /// A stopwatch that Ctrl-C stops, too.
-pub struct Watch(Stopwatch);
+pub struct Watch {
+    time: Stopwatch,
+    /// Told when somebody learns that the time is up.
+    pub heard: Heard,
+}
 
 impl Watch {
     /// Starts the clock; from now on Ctrl-C asks the run to stop, and a second one ends the program at once.
     pub fn start(limit_s: Option<f64>) -> Self {
         static HANDLER: Once = Once::new();
         HANDLER.call_once(listen);
-        Self(limit_s.map(Duration::from_secs_f64).map_or_else(Stopwatch::start, Stopwatch::limited))
+        let time = limit_s.map(Duration::from_secs_f64).map_or_else(Stopwatch::start, Stopwatch::limited);
+        Self { time, heard: Heard::default() }
     }
 }
 
 impl Clock for Watch {
     fn seconds(&self) -> f64 {
-        self.0.seconds()
+        self.time.seconds()
     }
 }
 
 impl Interrupt for Watch {
     fn interrupted(&self) -> bool {
-        CTRL_C.load(Ordering::Relaxed) || self.0.interrupted()
+        let is_over = CTRL_C.load(Ordering::Relaxed) || self.time.interrupted();
+        if is_over {
+            self.heard.store(true, Ordering::Relaxed);
+        }
+        is_over
     }
 }
 
 impl Stop for Watch {
     fn cause(&self) -> StoppedBy {
-        if CTRL_C.load(Ordering::Relaxed) { StoppedBy::Interrupt } else { self.0.cause() }
+        if CTRL_C.load(Ordering::Relaxed) { StoppedBy::Interrupt } else { self.time.cause() }
     }
 }

@@ -56,6 +56,12 @@ fn a_panic_that_a_plugin_provokes_in_the_framework_ends_the_run() {
 }
 
 #[test]
+fn a_call_that_never_ends_is_named_soon_after_the_time_limit() {
+    let said = plan(&["--use", "sampler=loops", "--time-limit", "0.2"]);
+    assert!(said.code == Some(3) && said.err.contains("`sampler/loops`"), "{said:?}");
+}
+
+#[test]
 fn a_panic_at_the_end_of_a_plugins_life_spoils_no_result() {
     let said = plan(&["--use", "contact-model=not-dropped"]);
     assert_eq!(said.code, Some(0), "{said:?}");

@@ -15,6 +15,7 @@ regrasp_abi::export_plugins!(
     ASKS_FOR_NO_FINGER,
     NOT_BUILT,
     NOT_CHECKED,
+    LOOPS,
     NO_SCHEMA,
     NOT_DROPPED,
     ABORTS,
@@ -233,6 +234,33 @@ const NOT_BUILT: Entry =
 const NOT_CHECKED: Entry =
     Entry { id: "sampler/not-checked", check: |_| panic!("the check broke"), ..SAMPLER };
 const NO_SCHEMA: Entry = Entry { id: "sampler/no-schema", schema: || panic!("the schema broke"), ..SAMPLER };
+
+/// Calls never come back.
+struct Loops;
+impl ClosedChainSampler for Loops {
+    fn sample(
+        &self,
+        _: &Task<'_>,
+        _: PoseRequest<'_>,
+        _: FingerSet,
+        _: &mut Context<'_>,
+    ) -> Result<Option<Configuration>, CallError> {
+        loop {
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+    }
+    fn close(
+        &self,
+        _: &Task<'_>,
+        _: &Pose,
+        _: &PerFinger<Option<Contact>>,
+        _: &Configuration,
+        _: &mut Context<'_>,
+    ) -> Result<Option<Configuration>, CallError> {
+        Ok(None)
+    }
+}
+const LOOPS: Entry = entry("sampler/loops", &[Slot::Sampler], Build::Sampler(|_, _| Ok(Box::new(Loops))));
 
 /// A working contact model that panics when it is dropped.
 struct NotDropped;
