@@ -60,7 +60,7 @@ const ARROWS: &[(&str, &[&str])] = &[
 ];
 
 /// Packages that may use everything but the command line.
-const FREE: &[&str] = &["regrasp-study", "regrasp"];
+const FREE: &[&str] = &["regrasp-study", "regrasp", "regrasp-fuzz"];
 
 /// The plugins that the book builds: crates as a reader writes them, with the rules of all plugins.
 const TUTORIALS: &str = "book/tutorials";
