@@ -20,10 +20,9 @@ fn a_kept_call_breaks_the_same_law_again() {
     for (slot, lie) in [
         (Slot::ContactModel, "wide"),
         (Slot::ContactModel, "spins-on"),
-        (Slot::StabilityTest, "afraid-of-friction"),
+        (Slot::StabilityTest, "counts-nothing"),
         (Slot::Surface, "inward"),
         (Slot::Surface, "tip-not-centre"),
-        (Slot::Sampler, "open-chain"),
         (Slot::TransferPlanner, "half-is-whole"),
     ] {
         let kept = case(slot, lie);
