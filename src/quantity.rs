@@ -31,7 +31,7 @@ pub fn digits(x: f64) -> String {
         _ if x == 0.0 => "0".to_owned(),
         _ if !x.is_finite() => x.to_string(),
         _ if size.fract() == 0.0 && size < 1e5 => format!("{x:.0}"),
-        s if s >= 1e5 || s < 1e-3 => format!("{x:.2e}"),
+        s if !(1e-3..1e5).contains(&s) => format!("{x:.2e}"),
         s if s >= 99.95 => format!("{x:.1}"),
         s if s >= 0.9995 => format!("{x:.2}"),
         _ => format!("{x:.4}"),
