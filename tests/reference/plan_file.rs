@@ -1,7 +1,7 @@
 //! The page of plan files names every key that a plan has, and no other.
 
 use crate::{page, printed};
-use regrasp::api::{Figure, Slot, check_schema};
+use regrasp::api::{Body, Figure, FingerIndex, Slot, check_schema};
 use regrasp::plan::{ConeClaim, ConeRecord, ContactSurface, EdgeRecord, Extreme, Holds, HoldsAt, Plan};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -92,6 +92,8 @@ fn full(plan: &Value) -> Value {
     plan.notes.insert(Slot::Sampler, [("hits".to_owned(), Figure::one(1.0))].into());
     let figure = || Extreme::new(1.0, Default::default(), HoldsAt::EveryState);
     if let Some(certificate) = &mut plan.certificate {
+        let pair = (Body::Fingertip(FingerIndex(0)), Body::Obstacle(0));
+        certificate.clearance.as_mut().expect("a plan has a clearance").place.pair = Some(pair);
         certificate.holds =
             Some(Holds { friction: figure(), mass: figure(), disturbance: figure(), effort: Some(figure()) });
     }

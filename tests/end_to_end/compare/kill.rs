@@ -108,7 +108,7 @@ fn two_do_not_work_on_one_study() {
     while !desk.path("study/study.json").exists() {
         sleep(Duration::from_millis(2));
     }
-    desk.run(&format!("{STUDY} study")).assert_fails(2, &["another process"]);
+    desk.run(&format!("{STUDY} study")).assert_fails(2, &["is being worked on by process"]);
     child.kill().expect("the child is ours");
     child.wait().expect("it was killed");
 }

@@ -25,7 +25,7 @@ pub(super) struct Gathered {
 
 impl Gathered {
     /// Counts a node that lies so deep in others.
-    pub fn enter(&mut self, depth: usize) -> Result<(), String> {
+    pub(super) fn enter(&mut self, depth: usize) -> Result<(), String> {
         self.nodes += 1;
         if depth > DEEPEST {
             return Err(format!("nodes lie more than {DEEPEST} deep in each other"));
@@ -37,7 +37,7 @@ impl Gathered {
     }
 
     /// Adds a mesh with a transform; one that mirrors turns the facets round.
-    pub fn add(&mut self, (vertices, facets): &Raw, transform: &Matrix4<f64>) -> Result<(), String> {
+    pub(super) fn add(&mut self, (vertices, facets): &Raw, transform: &Matrix4<f64>) -> Result<(), String> {
         let (all_vertices, all_facets) = &mut self.raw;
         check_count(all_facets.len() + facets.len())?;
         self.meshes += 1;
