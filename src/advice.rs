@@ -45,9 +45,9 @@ const NODES_OF_A_TRY: usize = 64;
 /// The time (s) that each of them may take.
 const TIME_OF_A_TRY: f64 = 2.0;
 
-/// Where a run found no grasp at start or goal that is stable enough: the least of some coefficients of friction
-/// at which grasps are found there, the rest of the problem being as it is; `None` where stability is not what
-/// most grasps lack, or no friction helps.
+/// Where a run found no grasp at start or goal that is stable enough: the least of some coefficients of
+/// friction at which grasps are found there, the rest of the problem being as it is; `None` where stability
+/// is not what most grasps lack, or no friction helps.
 ///
 /// It tries them, in a second or two each at most.
 pub fn needed_friction(scenario: &Scenario, run: &Run) -> Option<f64> {

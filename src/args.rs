@@ -108,13 +108,14 @@ pub struct PlanArgs {
     /// Compute with this many threads, 1 to 256; the plan is the same.
     #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16, 1, 256>)]
     pub threads: u16,
-    /// Go on after the first plan, with other seeds, and keep the best plan: for this many seconds, or with an
-    /// `x` for this many searches (`20x`), which gives the same plan whatever the machine.
+    /// Go on after the first plan, with other seeds, and keep the best plan: for this many seconds, or with
+    /// an `x` for this many searches (`20x`), which gives the same plan whatever the machine.
     #[arg(long, value_name = "S|Nx", allow_negative_numbers = true, value_parser = extent)]
     #[arg(conflicts_with_all = ["audit", "audit_save"])]
     pub improve: Option<Extent>,
-    /// What `--improve` makes less: `regrasps` (the default), `duration`, `holds` (the friction that the grasps
-    /// need), or `travel` of the joints; of two plans that are alike in it the shorter motion is better.
+    /// What `--improve` makes less: `regrasps` (the default), `duration`, `holds` (the friction that the
+    /// grasps need), or `travel` of the joints; of two plans that are alike in it the shorter motion is
+    /// better.
     #[arg(long, value_name = "WHAT", requires = "improve", value_parser = objective)]
     pub optimise: Option<Objective>,
     /// Write the plan to this file; `-` is standard output, and the report then goes to standard error.

@@ -69,8 +69,9 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     ending(&ran, &summary)
 }
 
-/// How deeply the run is audited, if at all: on demand, as it takes several times as long; a program built for
-/// debugging looks at a share of the calls whenever plugins are loaded, which is when somebody writes one.
+/// How deeply the run is audited, if at all: on demand, as it takes several times as long; a program built
+/// for debugging looks at a share of the calls whenever plugins are loaded, which is when somebody writes
+/// one.
 fn depth(args: &PlanArgs) -> Option<Depth> {
     let asked = args.audit || args.audit_save.is_some();
     let unasked = cfg!(debug_assertions) && !args.libraries.load.is_empty();

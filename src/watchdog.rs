@@ -1,8 +1,8 @@
 //! Ends a process in which a plugin from a library does not come back.
 //!
 //! A call is stopped where it asks [`proceed`](regrasp::api::Context::proceed), and nothing makes a library's
-//! code ask. A thread cannot be ended from outside either, so that the process has to end: with a sentence that
-//! says why.
+//! code ask. A thread cannot be ended from outside either, so that the process has to end: with a sentence
+//! that says why.
 
 use crate::terminal::printable;
 use regrasp::api::Slot;
@@ -51,8 +51,10 @@ fn loaded(setup: &Setup<'_>, registry: &Registry) -> Vec<String> {
 fn sentence(limit_s: f64, loaded: &[String]) -> String {
     let names = loaded.join(", ");
     format!(
-        "no plan: the time limit of {limit_s} s has passed, and for {} s a call of a plugin has not come back; \
-            from libraries are {names}. A plugin whose calls may be long asks `context.proceed()` in its loops",
+        "no plan: the time limit of {limit_s} s has passed, and for {} s a call of a plugin has not come \
+         back; \
+            from libraries are {names}. A plugin whose calls may be long asks `context.proceed()` in its \
+            loops",
         GRACE.as_secs()
     )
 }

@@ -43,9 +43,12 @@ pub fn urdfs() -> Vec<Vec<u8>> {
             };
             let _ = write!(
                 text,
-                "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{name}-link\"/><origin {origin}/>\
-                 <axis xyz=\"{axis}\"/><limit lower=\"-1.2\" upper=\"1.2\" velocity=\"3\" effort=\"1\"/></joint>\n\
-                 <link name=\"{name}-link\"><collision><geometry><sphere radius=\"0.01\"/></geometry></collision></link>\n"
+                "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child \
+                 link=\"{name}-link\"/><origin {origin}/>\
+                 <axis xyz=\"{axis}\"/><limit lower=\"-1.2\" upper=\"1.2\" velocity=\"3\" \
+                 effort=\"1\"/></joint>\n\
+                 <link name=\"{name}-link\"><collision><geometry><sphere \
+                 radius=\"0.01\"/></geometry></collision></link>\n"
             );
             parent = format!("{name}-link");
         }
@@ -83,7 +86,8 @@ pub fn objs() -> Vec<Vec<u8>> {
 
 /// The tetrahedron as PLY.
 pub fn plys() -> Vec<Vec<u8>> {
-    let head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+    let head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float \
+        z\n\
                 element face 4\nproperty list uchar int vertex_indices\nend_header\n";
     let corners = CORNERS.map(|[x, y, z]| format!("{x} {y} {z}\n"));
     let facets = FACETS.map(|[a, b, c]| format!("3 {a} {b} {c}\n"));
@@ -96,13 +100,19 @@ pub fn daes() -> Vec<Vec<u8>> {
     let facets: String = FACETS.iter().flatten().map(|corner| format!("{corner} ")).collect();
     vec![
         format!(
-            "<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><asset><unit meter=\"1\"/></asset>\n\
-             <library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"a\" count=\"12\">{corners}</float_array>\n\
-             <technique_common><accessor source=\"#a\" count=\"4\" stride=\"3\"/></technique_common></source>\n\
+            "<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><asset><unit \
+             meter=\"1\"/></asset>\n\
+             <library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"a\" \
+             count=\"12\">{corners}</float_array>\n\
+             <technique_common><accessor source=\"#a\" count=\"4\" \
+             stride=\"3\"/></technique_common></source>\n\
              <vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>\n\
-             <triangles count=\"4\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>{facets}</p></triangles></mesh></geometry>\n\
-             </library_geometries><library_visual_scenes><visual_scene id=\"s\"><node><instance_geometry url=\"#g\"/></node>\n\
-             </visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>\n"
+             <triangles count=\"4\"><input semantic=\"VERTEX\" source=\"#v\" \
+             offset=\"0\"/><p>{facets}</p></triangles></mesh></geometry>\n\
+             </library_geometries><library_visual_scenes><visual_scene id=\"s\"><node><instance_geometry \
+             url=\"#g\"/></node>\n\
+             </visual_scene></library_visual_scenes><scene><instance_visual_scene \
+             url=\"#s\"/></scene></COLLADA>\n"
         )
         .into_bytes(),
     ]

@@ -72,7 +72,8 @@ fn read_mesh(bytes: &[u8], folder: &Path, name: &str) {
 fn with_files(hand: &str, shape: &str) -> String {
     format!(
         "[hand]\n{hand}\n[object]\nshape = {shape}\nmass = 0.1\nfriction = 0.8\n\
-         [start]\npose = {{ position = [0.0, 0.0, 0.085] }}\n[[goal]]\npose = {{ position = [0.0, 0.0, 0.09] }}\n"
+         [start]\npose = {{ position = [0.0, 0.0, 0.085] }}\n[[goal]]\npose = {{ position = [0.0, 0.0, \
+         0.09] }}\n"
     )
 }
 

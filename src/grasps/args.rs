@@ -8,13 +8,16 @@ use std::path::PathBuf;
 /// Find many distinct, verified grasps of a hand and an object.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-A scenario needs a hand and an object here; start and goals do not count. Poses of the object are drawn evenly \
+A scenario needs a hand and an object here; start and goals do not count. Poses of the object are drawn \
+evenly \
 over the places at which enough fingers may reach it (or over the scenario's `workspace`) and over all \
-orientations; at each, contacts of the fingers are drawn and combined. Each grasp that is kept is stable by the \
+orientations; at each, contacts of the fingers are drawn and combined. Each grasp that is kept is stable by \
+the \
 scenario's stability test, free of collisions, and passed the independent verifier. Of two grasps that are \
 nearer than the spread, the earlier one is kept.\n\n\
 The file's name says what is written: `.npz` NumPy arrays, `.jsonl` one JSON object a line, `.xml` a MuJoCo \
-model with a keyframe for each grasp, `.reset.npz` reset states as 32-bit arrays. The same seed gives the same \
+model with a keyframe for each grasp, `.reset.npz` reset states as 32-bit arrays. The same seed gives the \
+same \
 grasps on any number of threads, and fewer grasps are the first of more.\n\n\
 What was found is kept beside the output in a file that ends with `.part`: after Ctrl-C, a time limit or a \
 crash the same command goes on from there, and with `--force` it begins anew.\n\n\

@@ -97,7 +97,8 @@ impl Report<'_> {
             line(
                 "verifier",
                 format!(
-                    "refused {}, which are left out: a fault of the program, which its makers like to hear of",
+                    "refused {}, which are left out: a fault of the program, which its makers like to hear \
+                     of",
                     counts.refused
                 ),
             );
@@ -111,7 +112,8 @@ impl Report<'_> {
         let causes: Vec<String> =
             counts.causes().iter().map(|(reason, n)| format!("{} {n}", reason.name())).collect();
         let start = format!(
-            "no more grasps: {found}; {} poses were drawn, {} within the reach of enough fingers; given up because of: {}",
+            "no more grasps: {found}; {} poses were drawn, {} within the reach of enough fingers; given up \
+             because of: {}",
             counts.poses,
             counts.reached,
             if causes.is_empty() { "nothing".to_owned() } else { causes.join(", ") }
@@ -127,7 +129,8 @@ impl Report<'_> {
         if counts.reached == 0 {
             return match counts.causes().first() {
                 Some((Reason::Collision, _)) => {
-                    "the object meets palm or obstacles, or links touch it: move obstacles, widen `workspace`, or \
+                    "the object meets palm or obstacles, or links touch it: move obstacles, widen \
+                     `workspace`, or \
                      lower `limits.resolution.clearance`"
                 }
                 Some((Reason::Edge, _)) => {

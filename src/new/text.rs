@@ -33,7 +33,8 @@ pub(super) fn scenario(
     };
     format!(
         "{SCENARIO_MARK}\n\
-         # Lengths in m, masses in kg, angles in degrees. `regrasp schema` says every key, the book explains them.\n\
+         # Lengths in m, masses in kg, angles in degrees. `regrasp schema` says every key, the book \
+         explains them.\n\
          \n[hand]\n{hand}\n\
          \n[object]\nmass = 0.1 # kg\nfriction = 0.8 # between fingertips and object\nshape = {shape}\n\
          \n# Uncomment to plan for weight and thinner friction within the joints' efforts:\n\

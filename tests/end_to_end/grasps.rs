@@ -29,7 +29,8 @@ fn files_are_the_same_on_any_number_of_threads() {
 #[test]
 fn a_hand_and_an_object_are_enough() {
     let desk = Desk::new();
-    let text = "[hand]\nbuiltin = \"four-finger\"\n[object]\nfriction = 0.8\nshape = { kind = \"sphere\", radius = 0.03 }\n";
+    let text = "[hand]\nbuiltin = \"four-finger\"\n[object]\nfriction = 0.8\nshape = { kind = \"sphere\", \
+        radius = 0.03 }\n";
     desk.write("mine.toml", text);
     let said = desk.run("grasps mine.toml -n 10 --graph --json -o g.npz");
     assert_eq!(said.code, 0, "{}", said.err);
@@ -61,7 +62,8 @@ fn where_no_grasp_exists_the_counts_say_why() {
     let far = "[start]\npose = { position = [0.0, 0.0, 0.085] }";
     let changes = [(
         far,
-        "[workspace]\nlower = [1.0, 1.0, 1.0]\nupper = [1.1, 1.1, 1.1]\n\n[start]\npose = { position = [0.0, 0.0, 0.085] }",
+        "[workspace]\nlower = [1.0, 1.0, 1.0]\nupper = [1.1, 1.1, 1.1]\n\n[start]\npose = { position = \
+         [0.0, 0.0, 0.085] }",
     )];
     desk.write("far.toml", built_in("sphere", &changes));
     desk.run("grasps far.toml -n 5 -o g.npz").assert_fails(3, &["0 of 5 grasps", "reach", "workspace"]);

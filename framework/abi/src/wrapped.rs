@@ -36,8 +36,8 @@ impl<A, O> Wrapped<A, O> {
     }
 }
 
-/// Implements a trait for [`Wrapped`] objects of it, from its methods: each can fail (`call`), or says what is
-/// harmless in place of its value; what needs more than that is written by hand.
+/// Implements a trait for [`Wrapped`] objects of it, from its methods: each can fail (`call`), or says what
+/// is harmless in place of its value; what needs more than that is written by hand.
 macro_rules! passed_on {
     ($trait:ident: [$($bound:tt)*] {
         $(fn $method:ident(&$self:ident $(, $arg:ident: $type:ty)*) -> $answer:ty

@@ -18,8 +18,8 @@ pub(crate) struct Forces {
 
 impl Forces {
     /// The plan's own forces; where it brings none, or a `grip` is given, those that hold the object against
-    /// gravity with the least share of the friction within the joints' efforts. `grip` is the most normal force of a contact (N), what the plan claims
-    /// where `None`.
+    /// gravity with the least share of the friction within the joints' efforts. `grip` is the most normal
+    /// force of a contact (N), what the plan claims where `None`.
     pub fn new(
         plan: &Plan,
         motion: &Motion,

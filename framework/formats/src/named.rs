@@ -65,7 +65,8 @@ mod tests {
                      <asset><mesh file=\"a.stl\"/></asset></mujoco>";
         std::fs::write(at("outer.xml"), outer).unwrap();
         assert_eq!(named_files(&at("outer.xml"), &[]), [at("inner.xml"), at("meshes/a.stl")]);
-        let urdf = "<robot><link><visual><geometry><mesh filename=\"package://meshes/a.stl\"/></geometry></visual>\
+        let urdf = "<robot><link><visual><geometry><mesh \
+            filename=\"package://meshes/a.stl\"/></geometry></visual>\
                     </link><mesh filename=\"c.obj\"/><mesh filename=\"none.stl\"/></robot>";
         std::fs::write(at("hand.urdf"), urdf).unwrap();
         assert_eq!(named_files(&at("hand.urdf"), &[]), [at("c.obj"), at("meshes/a.stl")]);

@@ -36,8 +36,8 @@ impl Friction {
         self.gamma > 0.0
     }
 
-    /// The share of the friction that a force without torque needs, for the outward normal `n`: |f_t|/(μ f_n);
-    /// infinite where it does not press.
+    /// The share of the friction that a force without torque needs, for the outward normal `n`: |f_t|/(μ
+    /// f_n); infinite where it does not press.
     pub(crate) fn share(&self, n: &Vec3, force: &Vec3) -> f64 {
         let normal = -n.dot(force);
         if normal > 0.0 { (force + n * normal).norm() / (self.mu * normal) } else { f64::INFINITY }

@@ -60,7 +60,8 @@ fn header_error(error: &serde_json::Error, bytes: &[u8], path: &Path) -> ReadErr
     }
 }
 
-/// Whether the last character is to blame: a number that is cut at its point or exponent is bad syntax to serde.
+/// Whether the last character is to blame: a number that is cut at its point or exponent is bad syntax to
+/// serde.
 fn at_the_end(error: &serde_json::Error, bytes: &[u8]) -> bool {
     let lines = bytes.split(|&byte| byte == b'\n');
     let (count, last) = lines.fold((0, 0), |(count, _), line| (count + 1, line.len()));

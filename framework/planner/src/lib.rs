@@ -4,8 +4,8 @@
 //! planning", SSD 2007, over the six roles of `regrasp-api`; it names no plugin. Data flows one way:
 //! [`solve`] makes a `run`, which finds grasps at start and goals (`endpoints`), makes one search a goal
 //! (first by a `relay`; then Algorithm 1 in `search`, 2 in `explore`, 3 in `connect` and `meet`; on `graph`),
-//! whose `query` is decomposed (`decompose`, `steps`, `order`), smooths the whole (`smooth`) and times it. The
-//! one way back: an edge that cannot be decomposed leaves the graph.
+//! whose `query` is decomposed (`decompose`, `steps`, `order`), smooths the whole (`smooth`) and times it.
+//! The one way back: an edge that cannot be decomposed leaves the graph.
 //!
 //! The result is that of the sequential algorithm for any number of threads: every expensive call is a pure
 //! function of its key, threads only compute results ahead, and these are consumed in order (`session`).

@@ -58,6 +58,9 @@ fn verdict(test: &Holding, grasp: &Grasp<'_>) -> Stability {
     with_context(|context| test.test(grasp, &mut Hint::default(), context))
 }
 
+/// What the default reserve leaves of friction and efforts.
+const KEPT: f64 = 0.95;
+
 #[test]
 fn a_yes_is_proved_by_forces_in_balance_within_cones_and_efforts() {
     let test = test_with(HoldingSettings::default());
@@ -75,9 +78,9 @@ fn a_yes_is_proved_by_forces_in_balance_within_cones_and_efforts() {
                 let mut sum = (case.g_O * 0.1, Vec3::zeros());
                 for (force, (n_O, mu, bounds)) in forces_O.iter().zip(&case.contacts) {
                     let normal = -n_O.dot(force);
-                    assert!((force + n_O * normal).norm() <= 0.97 * mu * normal);
+                    assert!((force + n_O * normal).norm() <= KEPT * mu * normal);
                     let efforts = bounds.efforts_of(force, 0.0);
-                    assert!(efforts.iter().zip(bounds.joints()).all(|(e, j)| e.abs() <= 0.97 * j.limit));
+                    assert!(efforts.iter().zip(bounds.joints()).all(|(e, j)| e.abs() <= KEPT * j.limit));
                     sum.0 += force;
                     sum.1 += (n_O * 0.03).cross(force);
                 }
@@ -111,10 +114,10 @@ fn most_power((n_O, mu, bounds): &(Vec3, f64, EffortBounds), velocity: &Vec3) ->
     for k in 0..120 {
         let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 120.0).sin_cos();
         for part in 0..=6 {
-            let rim = 0.97 * mu * f64::from(part) / 6.0;
+            let rim = KEPT * mu * f64::from(part) / 6.0;
             let force = -n_O + tangent * (rim * cos) + other * (rim * sin);
             let efforts = bounds.efforts_of(&force, 0.0);
-            let shares = efforts.iter().zip(bounds.joints()).map(|(e, j)| e.abs() / (0.97 * j.limit));
+            let shares = efforts.iter().zip(bounds.joints()).map(|(e, j)| e.abs() / (KEPT * j.limit));
             let taken = shares.fold(1e-12, f64::max);
             most = most.max(force.dot(velocity) / taken);
         }

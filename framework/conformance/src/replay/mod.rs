@@ -1,7 +1,7 @@
 //! The call that broke a law in a real run, made again as a test.
 //!
-//! `regrasp plan … --audit-save case.json` keeps the first breach: the call with its input, and the whole problem.
-//! Put the file beside the plugin's tests, and say
+//! `regrasp plan … --audit-save case.json` keeps the first breach: the call with its input, and the whole
+//! problem. Put the file beside the plugin's tests, and say
 //!
 //! ```text
 //! #[test]
@@ -10,10 +10,10 @@
 //! }
 //! ```
 //!
-//! The test fails until the plugin is mended, and stays as the test of that. Hand, object, obstacles, limits and
-//! the plugin's settings are the file's. What a sampler or local planner asks of the other roles is answered by
-//! the kit's references, which may lead it another way; a strategy's call needs the graph of its run, and only
-//! the run itself (`regrasp plan … --audit` with the same seed) makes it again.
+//! The test fails until the plugin is mended, and stays as the test of that. Hand, object, obstacles, limits
+//! and the plugin's settings are the file's. What a sampler or local planner asks of the other roles is
+//! answered by the kit's references, which may lead it another way; a strategy's call needs the graph of its
+//! run, and only the run itself (`regrasp plan … --audit` with the same seed) makes it again.
 
 mod call;
 mod input;

@@ -275,7 +275,8 @@ fn collada_has_its_encodings_and_named_axes() {
     let mut latin = declared.into_bytes();
     latin.extend(b"<!-- f\xfcnf -->");
     assert!(load("part.dae", latin).is_ok());
-    let accessor = "<technique_common><accessor source=\"#a\" stride=\"3\"><param name=\"Y\"/><param name=\"X\"/>\
+    let accessor = "<technique_common><accessor source=\"#a\" stride=\"3\"><param name=\"Y\"/><param \
+        name=\"X\"/>\
                     <param name=\"Z\"/></accessor></technique_common></source><vertices";
     let turned = dae(sides, "").replace("</source><vertices", accessor);
     let fault = refusal("part.dae", turned);

@@ -20,8 +20,8 @@ pub(super) fn reason(vertices: &[Vec3], facets: &[[u32; 3]], fault: MeshError) -
     }
 }
 
-/// What is wrong with a mesh that is inside out as a whole, where some of its bodies are not: names the largest
-/// whose facets look inward.
+/// What is wrong with a mesh that is inside out as a whole, where some of its bodies are not: names the
+/// largest whose facets look inward.
 pub(super) fn inward_body(vertices: &[Vec3], facets: &[[u32; 3]]) -> Option<String> {
     let bodies = bodies(vertices.len(), facets);
     if bodies.len() < 2 {
@@ -39,7 +39,8 @@ pub(super) fn inward_body(vertices: &[Vec3], facets: &[[u32; 3]]) -> Option<Stri
     let body = (0..bodies.len()).min_by(|&i, &j| volumes[i].total_cmp(&volumes[j]))?;
     let at = vertices[facets[bodies[body][0]][0] as usize];
     Some(format!(
-        "body {} of {} ({} facets, near [{:.4}, {:.4}, {:.4}]) is inside out: its facets look inward; reverse the \
+        "body {} of {} ({} facets, near [{:.4}, {:.4}, {:.4}]) is inside out: its facets look inward; \
+         reverse the \
          order of their vertices",
         body + 1,
         bodies.len(),

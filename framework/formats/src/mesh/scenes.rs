@@ -110,8 +110,10 @@ fn threemf(unit: &str, others: &str, items: &str) -> Vec<u8> {
         CORNERS.map(|[x, y, z]| format!("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", 1e3 * x, 1e3 * y, 1e3 * z));
     let triangles = SIDES.map(|[a, b, c]| format!("<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>"));
     let model = format!(
-        "<?xml version=\"1.0\"?><model {unit} xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\
-         <resources><object id=\"1\" type=\"model\"><mesh><vertices>{}</vertices><triangles>{}</triangles></mesh>\
+        "<?xml version=\"1.0\"?><model {unit} \
+         xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\
+         <resources><object id=\"1\" \
+         type=\"model\"><mesh><vertices>{}</vertices><triangles>{}</triangles></mesh>\
          </object>{others}</resources><build>{items}</build></model>",
         vertices.concat(),
         triangles.concat()
@@ -130,7 +132,8 @@ fn threemf_is_read_in_its_unit_with_components_and_transforms() {
         let mesh = load("a.3mf", &threemf(unit, "", one)).unwrap();
         assert!((mesh.mass_properties().volume / (VOLUME * f64::powi(times, 3)) - 1.0).abs() < 1e-5);
     }
-    let other = "<object id=\"2\"><components><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 6 7\"/>\
+    let other = "<object id=\"2\"><components><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 6 \
+        7\"/>\
                  </components></object>";
     let item = "<item objectid=\"2\" transform=\"0 1 0 -1 0 0 0 0 1 100 0 0\"/>";
     let mesh = load("a.3mf", &threemf("", other, item)).unwrap();

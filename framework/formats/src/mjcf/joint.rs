@@ -145,7 +145,8 @@ pub(super) fn efforts(
     if let Some(first) = aiming.first() {
         let count = aiming.len();
         remarks.push(format!(
-            "the motor of joint {first}{} has no `forcerange`: its gain times its range is taken as its effort; \
+            "the motor of joint {first}{} has no `forcerange`: its gain times its range is taken as its \
+             effort; \
              `--effort '*=…'` sets it (`joint` under `[hand]`)",
             if count > 1 { format!(" and of {} more", count - 1) } else { String::new() }
         ));
@@ -176,8 +177,8 @@ fn tendons(root: &Tag) -> Result<BTreeMap<String, Vec<(String, f64)>>, Fault> {
     Ok(tendons)
 }
 
-/// The largest effort that an actuator puts on its joint (N·m; N), and whether it is bounded by its aim alone;
-/// `None` where the file does not say.
+/// The largest effort that an actuator puts on its joint (N·m; N), and whether it is bounded by its aim
+/// alone; `None` where the file does not say.
 fn force(styled: &Styled<'_>, reader: &Reader<'_>) -> Result<Option<(f64, bool)>, Fault> {
     let gear = styled.list("gear")?.and_then(|gear| gear.first().copied()).unwrap_or(1.0).abs();
     let most = |[low, high]: [f64; 2]| low.abs().max(high.abs()) * gear;

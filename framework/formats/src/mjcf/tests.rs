@@ -130,7 +130,8 @@ fn numbers_that_no_robot_has_are_refused() {
 
 #[test]
 fn motors_without_a_range_of_force_pull_with_their_gain_over_their_range() {
-    let text = "<worldbody><body name='b'><joint name='j' range='0 1'/><joint name='k' range='0 1' axis='1 0 0'/>\
+    let text = "<worldbody><body name='b'><joint name='j' range='0 1'/><joint name='k' range='0 1' axis='1 \
+        0 0'/>\
                 </body></worldbody><actuator><position joint='j' kp='2' ctrlrange='-0.5 1'/>\
                 <general joint='k' biastype='affine' gainprm='3' ctrlrange='0 1' gear='2'/></actuator>";
     let robot = read(text).unwrap();

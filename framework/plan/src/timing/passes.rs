@@ -28,10 +28,31 @@ struct Row {
     most: f64,
 }
 
+/// A step that takes so many times as long as from rest to rest is driven from rest to rest: at a sharp turn
+/// the speed can be next to nothing, and the step beside it next to endless.
+const CRAWL: f64 = 10.0;
+
 /// The fastest speeds that keep every limit.
 pub(super) fn pace(path: &Path, bounds: &JointBounds) -> Pace {
+    let mut caps = path.caps.clone();
+    loop {
+        let pace = fastest_below(path, bounds, &caps);
+        let crawls = |&step: &usize| pace.durations[step] > CRAWL * path.rest_to_rest[step];
+        let crawling: Vec<usize> = (0..pace.durations.len()).filter(crawls).collect();
+        if crawling.is_empty() {
+            return within_limits(path, bounds, pace);
+        }
+        // Each round takes away the last speed of a state, so that the rounds end.
+        for step in crawling {
+            caps[step..=step + 1].fill(0.0);
+        }
+    }
+}
+
+/// The fastest speeds below these.
+fn fastest_below(path: &Path, bounds: &JointBounds, caps: &[f64]) -> Pace {
     let states = path.stops.len();
-    let mut highest: Vec<f64> = path.caps.iter().map(|cap| cap * cap).collect();
+    let mut highest: Vec<f64> = caps.iter().map(|cap| cap * cap).collect();
     let mut rows = Vec::new();
     for step in (0..states.saturating_sub(1)).rev() {
         if highest[step] > 0.0 {
@@ -48,6 +69,11 @@ pub(super) fn pace(path: &Path, bounds: &JointBounds) -> Pace {
     }
     let mut pace = Pace { speeds: x.iter().map(|x| x.max(0.0).sqrt()).collect(), durations: Vec::new() };
     pace.durations = (0..states.saturating_sub(1)).map(|step| duration(path, &pace.speeds, step)).collect();
+    pace
+}
+
+/// Slower by what rounding may leave beyond the limits.
+fn within_limits(path: &Path, bounds: &JointBounds, mut pace: Pace) -> Pace {
     let slower = worst_ratio(path, bounds, &pace).max(1.0);
     pace.durations.iter_mut().for_each(|h| *h *= slower);
     pace.speeds.iter_mut().for_each(|speed| *speed /= slower);

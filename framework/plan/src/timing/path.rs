@@ -160,8 +160,8 @@ impl Path {
     }
 }
 
-/// How far (m) the cubic takes a fingertip from a step's chord, at most, when it passes a state at its end with
-/// the tangent; the span is negative for the step before the state.
+/// How far (m) the cubic takes a fingertip from a step's chord, at most, when it passes a state at its end
+/// with the tangent; the span is negative for the step before the state.
 ///
 /// What is not progress along the chord is f (1 - f)² of the tangent's part across it, in units of twice the
 /// span where the other end is slow: most at a third of the way, where the tips are placed.

@@ -21,8 +21,8 @@ pub struct Worker {
 pub(super) struct AtWork(PathBuf);
 
 impl AtWork {
-    /// Says that this process works on the folder, whose lock it holds. Where that cannot be written, a second
-    /// process hears less, and is refused all the same.
+    /// Says that this process works on the folder, whose lock it holds. Where that cannot be written, a
+    /// second process hears less, and is refused all the same.
     pub fn begin(folder: &Path) -> Self {
         let path = folder.join(WORKER);
         let _ = fs::write(&path, format!("{}\n", std::process::id()));
@@ -78,7 +78,7 @@ mod tests {
             (0, "1970-01-01 00:00"),
             (951_782_399, "2000-02-28 23:59"),
             (951_782_400, "2000-02-29 00:00"),
-            (1_795_316_400, "2026-11-22 07:00"),
+            (1_795_316_400, "2026-11-22 03:00"),
         ] {
             let worker = Worker { process: 7, since_s };
             assert_eq!(worker.to_string(), format!("process 7 since {said} UTC"));

@@ -1,9 +1,9 @@
-//! Closure of contacts whose cones the plan records one by one: round ones as they are where all of a grasp are
-//! round, otherwise cones of edges, and round ones by edges inside them.
+//! Closure of contacts whose cones the plan records one by one: round ones as they are where all of a grasp
+//! are round, otherwise cones of edges, and round ones by edges inside them.
 //!
 //! The edges' wrenches span all of space positively, which is closure, exactly if they have rank 6 and some
-//! positive combination of all of them is zero (A. J. Goldman, A. W. Tucker, "Polyhedral convex cones", 1956).
-//! Such a combination is a proof that arithmetic can check, whoever found it.
+//! positive combination of all of them is zero (A. J. Goldman, A. W. Tucker, "Polyhedral convex cones",
+//! 1956). Such a combination is a proof that arithmetic can check, whoever found it.
 
 use super::force::{self, Contact};
 use super::socp;
@@ -115,8 +115,8 @@ impl ConesCheck {
         held.iter().map(contact).collect()
     }
 
-    /// Slack and margin of round contacts, from the carried force, else (or where its slack has dwindled) from
-    /// the solver's.
+    /// Slack and margin of round contacts, from the carried force, else (or where its slack has dwindled)
+    /// from the solver's.
     fn prove_round(&mut self, contacts: &[Contact]) -> Option<(f64, f64)> {
         let carried = self.carried_round.take().and_then(|(proof, solved)| {
             let proof = force::prove(contacts, &proof.forces)?;
@@ -181,8 +181,8 @@ struct Proof {
 impl Proof {
     /// A lower bound of the closure margin Q1 = min over |w| = 1 of the largest power a_j = w·W_j of an edge.
     ///
-    /// The shares λ balance, so the powers above zero, weighted, sum to as much as those below, and that is at
-    /// most max a_j: Σ λ |a| ≤ 2 max a. And Σ λ |a| ≥ min λ · |Wᵀw| ≥ min λ · σ_min(W).
+    /// The shares λ balance, so the powers above zero, weighted, sum to as much as those below, and that is
+    /// at most max a_j: Σ λ |a| ≤ 2 max a. And Σ λ |a| ≥ min λ · |Wᵀw| ≥ min λ · σ_min(W).
     fn margin(&self) -> f64 {
         0.5 * self.least * self.singular
     }

@@ -17,7 +17,11 @@ pub(super) struct Buffers<'d> {
 }
 
 impl<'d> Buffers<'d> {
-    pub fn new(document: &'d Document, binary: Option<&'d [u8]>, folder: &Path) -> Result<Self, String> {
+    pub(super) fn new(
+        document: &'d Document,
+        binary: Option<&'d [u8]>,
+        folder: &Path,
+    ) -> Result<Self, String> {
         let read = |(i, buffer): (usize, &super::document::Buffer)| match &buffer.uri {
             None if i == 0 => Ok(Cow::Borrowed(binary.ok_or("its buffer is missing; is it truncated?")?)),
             None => Err(format!("buffer {i} names no file")),
@@ -28,7 +32,7 @@ impl<'d> Buffers<'d> {
     }
 
     /// The points of an accessor.
-    pub fn points(&self, accessor: usize) -> Result<Vec<Vec3>, String> {
+    pub(super) fn points(&self, accessor: usize) -> Result<Vec<Vec3>, String> {
         let all = self.numbers(accessor, "VEC3", 3)?;
         if !all.iter().all(|x| x.is_finite()) {
             return Err(format!("accessor {accessor} holds a number that is not finite"));
@@ -37,7 +41,7 @@ impl<'d> Buffers<'d> {
     }
 
     /// The indices of an accessor.
-    pub fn indices(&self, accessor: usize) -> Result<Vec<u32>, String> {
+    pub(super) fn indices(&self, accessor: usize) -> Result<Vec<u32>, String> {
         Ok(self.numbers(accessor, "SCALAR", 1)?.into_iter().map(|index| index as u32).collect())
     }
 

@@ -15,8 +15,8 @@ fn fewest_pairs(tests: usize) -> usize {
 /// Up to so many variants are named one by one.
 const FEW: usize = 4;
 
-/// The result of a scenario in a sentence or two; `name` marks the names of variants. Plans that do not verify
-/// come first: what took how long says nothing before that.
+/// The result of a scenario in a sentence or two; `name` marks the names of variants. Plans that do not
+/// verify come first: what took how long says nothing before that.
 pub fn finding(row: &[Cell<'_>], name: &dyn Fn(&str) -> String) -> String {
     let rejected = row.iter().filter_map(|cell| unverified(cell, name));
     rejected.chain([times_and_shares(row, name)]).collect::<Vec<_>>().join(" ")
