@@ -46,7 +46,7 @@ impl Kind {
     }
 
     /// The format that a file's name tells.
-    pub fn of_name(path: &Path) -> Result<Self, String> {
+    pub(super) fn of_name(path: &Path) -> Result<Self, String> {
         let Some(ending) = path.extension().and_then(|ending| ending.to_str()) else {
             return Err(format!("its name has no ending that tells the format ({})", endings()));
         };
@@ -74,7 +74,7 @@ impl Kind {
     }
 
     /// What a file holds; `path` is where it lies, for those that name further files.
-    pub fn parse(self, bytes: &[u8], path: &Path) -> Result<Raw, String> {
+    pub(super) fn parse(self, bytes: &[u8], path: &Path) -> Result<Raw, String> {
         match self {
             Self::Stl => stl::parse(bytes),
             Self::Obj => obj::parse(bytes),
