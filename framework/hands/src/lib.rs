@@ -1,5 +1,5 @@
 //! Hands from robots' files: what a description says, turned into a
-//! [`HandDescription`](regrasp_api::HandDescription), and a report of how.
+//! [`HandDescription`], and a report of how.
 //!
 //! | question | file |
 //! |---|---|
