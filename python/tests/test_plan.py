@@ -112,7 +112,9 @@ def test_the_page_shows_in_a_notebook(plan: rg.Plan) -> None:
 
 def test_no_plan_says_why_and_what_to_try() -> None:
     slippery = rg.Scenario(
-        object=rg.Sphere(0.03, friction=0.02), start=rg.pose(z=0.085), goals=[rg.pose(z=0.09)]
+        object=rg.Sphere(0.03, friction=0.02),
+        start=rg.pose(z=0.085),
+        goals=[rg.pose(z=0.085, axis="z", angle_deg=180)],
     )
     with pytest.raises(rg.NoPlan) as failure:
         slippery.plan(seed=0, max_nodes=20)

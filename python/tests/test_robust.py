@@ -17,17 +17,11 @@ HARD = {"seed": 0, "settings": {"graph-strategy.end": 0.5}, "max_nodes": 1_000_0
 
 
 def impossible() -> rg.Scenario:
-    """A search that goes on: a goal behind a wall that leaves no way."""
-    wall = {
-        "name": "wall",
-        "shape": {"kind": "box", "size": [0.5, 0.004, 0.5]},
-        "pose": {"position": [0, 0.1, 0]},
-    }
+    """A search that goes on: a ball so slippery that grasps at both ends are there, and hardly a way."""
     return rg.Scenario(
-        object=rg.Cuboid((0.045, 0.045, 0.045), friction=0.35),
+        object=rg.Sphere(0.03, friction=0.02),
         start=rg.pose(z=0.085),
         goals=[rg.pose(z=0.085, axis=(1, 1, 0), angle_deg=170)],
-        obstacles=[wall],
     )
 
 
