@@ -87,8 +87,8 @@ impl Stop for Deadline<'_> {
     }
 }
 
-/// Makes one run of a study here and now, as the process does that [`super::Isolate`] starts; `None` where it was
-/// cancelled.
+/// Makes one run of a study here and now, as the process does that [`super::Isolate`] starts; `None` where it
+/// was cancelled.
 pub fn make_run(
     prepared: &Prepared<'_>,
     key: RunKey,
