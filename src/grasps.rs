@@ -9,7 +9,7 @@ mod report;
 
 use crate::outputs::{self, Kind};
 use crate::watch::Watch;
-use crate::{Failure, overrides, plugins};
+use crate::{Failure, inputs, overrides, plugins};
 pub use args::GraspsArgs;
 use output::Output;
 use progress::Bar;
@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 pub fn run(args: &GraspsArgs) -> Result<(), Failure> {
     let output = Output::new(&args.output)?;
-    let mut inputs = outputs::files_of(&args.scenario);
+    let mut inputs = inputs::of_scenario(&args.scenario);
     inputs.extend(args.libraries.load.iter().cloned());
     let registry = plugins::registry(&args.libraries)?;
     let watch = Watch::start(args.time_limit);

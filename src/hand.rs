@@ -8,11 +8,12 @@ use crate::numbers::whole;
 use crate::outputs::{self, HAND_MARK, Kind, OverwriteArgs};
 use crate::table::Table;
 use crate::terminal::printable;
-use crate::{Failure, say, say_json};
+use crate::{Failure, inputs, say, say_json};
 use clap::Args;
 use regrasp::api::{FingerIndex, Hand, HandDescription, JointDescription, Vec3};
 use regrasp::hands::{HandOptions, HandReport, JointChoice, ReadHand, read_hand, read_urdf_text};
-use regrasp::world::{ChainHand, FingerWorkspace, ObjectPlace, finger_workspace, object_place};
+use regrasp::world::{ChainHand, FingerWorkspace, ObjectPlace, finger_workspace, object_places};
+use scenario::{Draft, HandSource};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -110,15 +111,19 @@ pub struct HandArgs {
 
 pub fn run(args: &HandArgs) -> Result<(), Failure> {
     let kind = if args.scenario { Kind::Scenario } else { Kind::Hand };
-    let wished = args.output.as_deref().map(|path| (path, kind));
-    outputs::check(std::slice::from_ref(&args.file), wished.as_slice(), args.overwrite)?;
+    let hand_beside =
+        args.output.as_deref().map(beside).filter(|_| args.scenario && xacro::is_needed(&args.file));
+    let mut wished: Vec<(&Path, Kind)> =
+        args.output.as_deref().map(|path| (path, kind)).into_iter().collect();
+    wished.extend(hand_beside.as_deref().map(|path| (path, Kind::Hand)));
+    outputs::check(&inputs::of_robot(&args.file, &args.packages), &wished, args.overwrite)?;
     let ReadHand { description, report } = read(args)?;
     let hand = ChainHand::new(description).map_err(Failure::refused)?;
     let understood = Understood {
         hand: &hand,
         report: &report,
         reach: fingers(&hand).map(|finger| finger_workspace(&hand, finger)).collect(),
-        place: object_place(&hand, args.ball),
+        places: object_places(&hand, args.ball),
         ball: args.ball,
     };
     if let Some(path) = &args.output {
@@ -199,6 +204,11 @@ fn hand_file(hand: &HandDescription) -> Result<String, Failure> {
     Ok(format!("{HAND_MARK}\n{text}"))
 }
 
+/// The hand file of a scenario that is written to `output`.
+fn beside(output: &Path) -> PathBuf {
+    output.with_extension("hand.toml")
+}
+
 fn write(path: &Path, text: &str) -> Result<(), Failure> {
     if outputs::is_standard(path) {
         return say(text);
@@ -211,23 +221,39 @@ struct Understood<'a> {
     hand: &'a ChainHand,
     report: &'a HandReport,
     reach: Vec<FingerWorkspace>,
-    place: Option<ObjectPlace>,
+    /// Where the fingers surround a ball, the best place first.
+    places: Vec<ObjectPlace>,
     ball: f64,
 }
 
 impl Understood<'_> {
-    /// A scenario to start from, to be written to `output`.
+    /// A scenario to start from, to be written to `output`; a hand that a xacro describes is written beside
+    /// it.
     fn scenario(&self, args: &HandArgs, output: &Path) -> Result<String, Failure> {
-        let Some(place) = &self.place else {
+        if self.places.is_empty() {
             let message = format!(
                 "no place was found at which all fingertips reach a ball of {:.0} mm; give the radius of \
                  another one (`--ball`)",
                 2e3 * self.ball
             );
             return Err(Failure::bad_input(message));
+        }
+        let (options, hand_file_path) = (options(args), beside(output));
+        let source = match xacro::is_needed(&args.file) {
+            true => {
+                write(&hand_file_path, &hand_file(self.hand.description())?)?;
+                HandSource::HandFile(&hand_file_path)
+            }
+            false => HandSource::Robot(&args.file, &options),
         };
-        let fingers = self.hand.finger_count();
-        Ok(scenario::text(&args.file, output, &options(args), place, (self.ball, fingers)))
+        let draft = Draft { source, output, ball: self.ball, fingers: self.hand.finger_count() };
+        let (text, is_planned) = draft.placed(&self.places)?;
+        if !is_planned {
+            let note = "note: at none of the places that were tried a plan was found; change the ball's \
+                        position, its radius (`--ball`) or the limits of the joints\n";
+            let _ = std::io::stderr().write_all(note.as_bytes());
+        }
+        Ok(text)
     }
 
     fn json(&self) -> Value {
@@ -248,7 +274,7 @@ impl Understood<'_> {
         json!({
             "hand": description,
             "fingers": fingers(self.hand).zip(&self.reach).map(finger).collect::<Vec<_>>(),
-            "object_place": self.place.as_ref().map(|place| json!({
+            "object_place": self.places.first().map(|place| json!({
                 "ball_radius": self.ball, "position": place.p_HO.as_slice(), "quality": place.quality,
             })),
             "report": self.report,
@@ -335,7 +361,7 @@ impl Understood<'_> {
 
     fn proposal(&self) -> String {
         let diameter = 2e3 * self.ball;
-        match &self.place {
+        match self.places.first() {
             Some(ObjectPlace { p_HO, quality }) => format!(
                 "\nthe fingertips surround a ball of {diameter:.0} mm best at\n  position = [{:.3}, {:.3}, \
                  {:.3}]   (quality {quality:.2} of 1)\n",

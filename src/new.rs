@@ -8,11 +8,12 @@ mod tests;
 
 use crate::outputs::{self, Kind, OverwriteArgs};
 use crate::plugins::registry;
-use crate::{Failure, args::LibraryArgs, say};
+use crate::{Failure, args::LibraryArgs, place, say};
 use answers::{GoalChoice, HandGiven, ObjectChoice};
 use clap::Args;
-use regrasp::run::scenario::{self, SCENARIOS, load_hand};
-use regrasp::world::{ChainHand, object_place};
+use regrasp::api::Vec3;
+use regrasp::run::scenario::{SCENARIOS, load_hand};
+use regrasp::world::{ChainHand, ObjectPlace, object_places};
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
@@ -53,17 +54,24 @@ pub fn run(args: &NewArgs) -> Result<(), Failure> {
     let object = ObjectChoice::read(&object)?;
     let goal = GoalChoice::read(&ask(&args.goal, "goal: `turn AXIS DEGREES` or `move X Y Z`", "turn z 45")?)?;
     let loaded = load_hand(&format!("[hand]\n{}\n", hand.line()), folder).map_err(Failure::refused)?;
-    let start = start(&hand, &loaded.hand, object.size())?;
-    let text = text::scenario(&hand, &object, &goal, start, loaded.description.finger.len());
-    // What is written can be planned: it is read as `plan` reads it.
+    let places = starts(&hand, &loaded.hand, object.size())?;
+    let fingers = loaded.description.finger.len();
+    let text = |place: Vec3| text::scenario(&hand, &object, &goal, place.into(), fingers);
     let name = args.output.display().to_string();
     let registry = registry(&LibraryArgs { load: Vec::new() })?;
-    scenario::from_text(&name, &text, folder, &registry).map_err(Failure::refused)?;
+    let planned = place::that_plans((&name, folder), &registry, &places, text)?;
+    let is_planned = planned.is_some();
+    let text = planned.unwrap_or_else(|| text(places[0].p_HO));
     if outputs::is_standard(&args.output) {
         return say(&text);
     }
     regrasp::plan::write_file(&args.output, |out| out.write_all(text.as_bytes()))
         .map_err(Failure::refused)?;
+    if !is_planned {
+        let note = "note: no plan was found for it within a few seconds; a smaller goal or another place of \
+                    the object (`start.pose`) may do better\n";
+        let _ = io::stderr().write_all(note.as_bytes());
+    }
     say(&format!("written to {name}\n  next  regrasp plan {name} -o plan.json\n"))
 }
 
@@ -79,8 +87,8 @@ fn answer(lines: &mut impl BufRead, question: &str, usual: &str) -> Result<Strin
 }
 
 /// Where the object starts: where built-in scenarios of this hand have it, or where its fingertips surround
-/// a ball of this radius best.
-fn start(given: &HandGiven, hand: &ChainHand, size: f64) -> Result<[f64; 3], Failure> {
+/// a ball of this radius, the best place first.
+fn starts(given: &HandGiven, hand: &ChainHand, size: f64) -> Result<Vec<ObjectPlace>, Failure> {
     let uses = |name: &str| {
         let mut files = SCENARIOS.iter().filter_map(|file| file.read().ok());
         files.find(|file| file.hand.builtin.as_deref() == Some(name))
@@ -89,11 +97,15 @@ fn start(given: &HandGiven, hand: &ChainHand, size: f64) -> Result<[f64; 3], Fai
         HandGiven::BuiltIn(name) => uses(name).map(|file| file.start.pose.position),
         HandGiven::File { .. } => None,
     };
-    let sought = || object_place(hand, size).map(|place| place.p_HO.into());
-    known.or_else(sought).ok_or_else(|| {
-        Failure::bad_input(format!(
+    let places = match known {
+        Some(position) => vec![ObjectPlace { p_HO: position.into(), quality: 1.0 }],
+        None => object_places(hand, size),
+    };
+    match places.is_empty() {
+        false => Ok(places),
+        true => Err(Failure::bad_input(format!(
             "no place was found at which all fingertips reach a ball of {:.0} mm; choose another object",
             2e3 * size
-        ))
-    })
+        ))),
+    }
 }

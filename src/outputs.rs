@@ -11,9 +11,6 @@ use std::path::{Path, PathBuf};
 /// How many bytes of a file tell its kind.
 const HEAD: u64 = 1 << 16;
 
-/// Larger files (bytes) are no scenario and no hand file.
-const LARGEST: u64 = 64 << 20;
-
 /// Whether files that this program did not write may be replaced.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct OverwriteArgs {
@@ -41,6 +38,8 @@ pub enum Kind {
     Scenario,
     /// A file for another program.
     Export,
+    /// A call that broke a law, as an audit keeps it.
+    Case,
 }
 
 impl Kind {
@@ -55,6 +54,7 @@ impl Kind {
             Kind::Hand => "hand file",
             Kind::Scenario => "scenario",
             Kind::Export => "exported file",
+            Kind::Case => "kept case",
         }
     }
 
@@ -76,6 +76,7 @@ impl Kind {
             Kind::Hand => &[HAND_MARK],
             Kind::Scenario => &[SCENARIO_MARK],
             Kind::Export => &["regrasp", "moving_finger.npy"],
+            Kind::Case => &["regrasp-audit-case"],
         }
     }
 
@@ -122,41 +123,6 @@ pub fn check_folder(path: &Path) -> Result<(), Failure> {
     match is_standard(path) {
         true => Err(refused(path, "the files need a folder, and `-` is standard output; name a folder")),
         false => Ok(()),
-    }
-}
-
-/// A scenario file and all files that it names, those of its hand file included: nothing of these may be
-/// replaced.
-pub fn files_of(scenario: &str) -> Vec<PathBuf> {
-    let path = PathBuf::from(scenario);
-    let mut files = vec![path.clone()];
-    for named in named_in(&path) {
-        if named.extension().is_some_and(|extension| extension == "toml") {
-            files.extend(named_in(&named));
-        }
-        files.push(named);
-    }
-    files
-}
-
-/// The files that the texts of a TOML or JSON file name; none where it is neither.
-fn named_in(path: &Path) -> Vec<PathBuf> {
-    let small = fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() < LARGEST);
-    let text = if small { fs::read_to_string(path).unwrap_or_default() } else { String::new() };
-    let value: serde_json::Value =
-        toml::from_str(&text).or_else(|_| serde_json::from_str(&text)).unwrap_or_default();
-    let mut texts = Vec::new();
-    collect(&value, &mut texts);
-    let folder = path.parent().unwrap_or(Path::new(""));
-    texts.iter().map(|text| folder.join(text)).filter(|path| path.is_file()).collect()
-}
-
-fn collect(value: &serde_json::Value, texts: &mut Vec<String>) {
-    match value {
-        serde_json::Value::String(text) => texts.push(text.clone()),
-        serde_json::Value::Array(items) => items.iter().for_each(|item| collect(item, texts)),
-        serde_json::Value::Object(items) => items.values().for_each(|item| collect(item, texts)),
-        _ => {}
     }
 }
 
@@ -271,16 +237,5 @@ mod tests {
         assert!(!allowed("my thesis", Kind::Plan, KEEP));
         assert!(allowed("my thesis", Kind::Plan, FORCE));
         assert!(!allowed("name = \"my hand\"", Kind::Hand, KEEP));
-    }
-
-    #[test]
-    fn a_scenario_names_its_files_and_those_of_its_hand() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        fs::write(at("palm.stl"), "solid").unwrap();
-        fs::write(at("hand.toml"), "palm = [{ file = \"palm.stl\" }]").unwrap();
-        fs::write(at("mine.toml"), "[hand]\nfile = \"hand.toml\"").unwrap();
-        let files = files_of(at("mine.toml").to_str().unwrap());
-        assert_eq!(files, [at("mine.toml"), at("palm.stl"), at("hand.toml")]);
     }
 }

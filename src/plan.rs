@@ -6,7 +6,7 @@ use crate::outputs::{self, Kind};
 use crate::progress::Line;
 use crate::terminal::printable;
 use crate::watch::Watch;
-use crate::{Failure, overrides, plugins, report, say, say_json, view, watchdog};
+use crate::{Failure, inputs, overrides, plugins, report, say, say_json, view, watchdog};
 use regrasp::api::{Level, Tally};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
@@ -89,8 +89,8 @@ fn audited(
     let saved = match (&args.audit_save, case) {
         (Some(path), Some(case)) => {
             let text = format!("{:#}\n", case.file);
-            std::fs::write(path, text)
-                .map_err(|error| Failure::bad_input(format!("`{}`: {error}", path.display())))?;
+            regrasp::plan::write_file(path, |out| out.write_all(text.as_bytes()))
+                .map_err(Failure::refused)?;
             format!("; the call is kept in {}", path.display())
         }
         _ => String::new(),
@@ -132,7 +132,7 @@ fn check_outputs(args: &PlanArgs) -> Result<(), Failure> {
         ));
     }
     kept::check(args.grasps.as_deref())?;
-    let mut inputs = outputs::files_of(&args.scenario);
+    let mut inputs = inputs::of_scenario(&args.scenario);
     inputs.extend(args.libraries.load.iter().cloned());
     let plan = args.output.as_deref().filter(|_| !standard);
     let others = plan.map(|path| [beside(path, "partial"), beside(path, "rejected")]).into_iter().flatten();
@@ -143,6 +143,7 @@ fn check_outputs(args: &PlanArgs) -> Result<(), Failure> {
     wished.extend(others.iter().map(|path| (path.as_path(), Kind::Plan)));
     wished.extend(args.grasps.as_deref().map(|path| (path, Kind::Grasps)));
     wished.extend(page.as_deref().map(|path| (path, Kind::Page)));
+    wished.extend(args.audit_save.as_deref().map(|path| (path, Kind::Case)));
     outputs::check(&inputs, &wished, args.overwrite)
 }
 

@@ -9,9 +9,8 @@ row = len(plan.times) // 2
 scene = trimesh.Scene()
 scene.add_geometry(trimesh.creation.box(size), transform=plan.object_poses[row], geom_name="object")
 hand = rg.Hand.built_in("four-finger")
-for finger, known in enumerate(hand.fingers):
-    joints = plan.joints[row, 3 * finger : 3 * finger + 3]
+for finger, center in zip(hand.fingers, hand.fingertips(plan.joints[row]), strict=True):
     ball = trimesh.creation.icosphere(radius=hand.fingertip_radius)
-    ball.apply_translation(hand.fk(finger, joints))
-    scene.add_geometry(ball, geom_name=known.name)
+    ball.apply_translation(center)
+    scene.add_geometry(ball, geom_name=finger.name)
 print(len(scene.geometry), "bodies within", scene.extents.round(3), "m")

@@ -1,8 +1,9 @@
 //! Hands: forward and inverse kinematics of many postures at once.
 
-use crate::errors;
+use crate::{errors, urdf};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use regrasp::api::{FingerIndex, FingerJoints, Hand as _, Vec3};
 use regrasp::run::scenario::load_hand;
 use regrasp::world::ChainHand;
@@ -75,9 +76,17 @@ impl Hand {
         let radius = self.hand.fingertip_radius();
         json!({
             "fingers": fingers, "notes": self.notes, "description": description,
-            "fingertip_radius": radius,
+            "fingertip_radius": radius, "joint_names": regrasp::export::joint_names(description),
         })
         .to_string()
+    }
+
+    /// Names and contents of the hand's URDF, first, and of the meshes that it names.
+    fn urdf(&self, py: Python<'_>, stem: &str) -> PyResult<Vec<(String, Py<PyBytes>)>> {
+        let files = py.detach(|| urdf::files(&self.hand, stem));
+        let files = files.map_err(|reason| errors::plan_file(py, &reason))?;
+        let file = |file: regrasp::export::File| (file.name, PyBytes::new(py, &file.bytes).unbind());
+        Ok(files.into_iter().map(file).collect())
     }
 
     /// Fingertip centres in H (n, 3) for postures (n, joints) of one finger.

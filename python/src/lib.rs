@@ -17,6 +17,7 @@ mod roles;
 mod run;
 mod scenario;
 mod table;
+mod urdf;
 mod watch;
 
 /// The native module of the package `regrasp`.

@@ -8,12 +8,16 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use regrasp::export::{ExportError, Format, Scene};
 use regrasp::plan::{self, SegmentName};
+use regrasp::verify::StateFigures;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Names and contents of files.
 type Exported = Vec<(String, Py<PyBytes>)>;
+
+/// Margins and smallest distances.
+type Series<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
 /// A plan as its file holds it.
 #[pyclass(frozen, module = "regrasp._regrasp")]
@@ -119,6 +123,18 @@ impl Plan {
         let plan = Arc::clone(&self.0);
         let verdict = beside(py, &Watch::start(None), None, move || regrasp::verify::verify(&plan))?;
         Ok(json!(verdict).to_string())
+    }
+
+    /// For every state, segment after segment, the verifier's margin and the smallest distance (m); NaN where
+    /// there is none.
+    fn series<'py>(&self, py: Python<'py>) -> PyResult<Series<'py>> {
+        let plan = Arc::clone(&self.0);
+        let series = beside(py, &Watch::start(None), None, move || regrasp::verify::series(&plan))?;
+        let states = series.map_err(|error| errors::plan_file(py, &error))?.concat();
+        let margins = states.iter().map(|state| state.margin.unwrap_or(f64::NAN)).collect();
+        let distance = |state: &StateFigures| state.clearance.map_or(f64::NAN, |(distance, _)| distance);
+        let distances = states.iter().map(distance).collect();
+        Ok((PyArray1::from_vec(py, margins), PyArray1::from_vec(py, distances)))
     }
 
     /// The page that plays the plan, as HTML.

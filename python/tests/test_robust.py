@@ -98,6 +98,23 @@ def test_a_fork_after_planning_plans() -> None:
     pytest.fail("the child hangs")
 
 
+FORKED = """
+import os
+import regrasp as rg
+child = os.fork()
+plan = rg.plan("sphere", seed=1, threads=2)
+if child == 0:
+    os._exit(0 if plan.verify() else 1)
+print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), len(plan.times))
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+def test_both_sides_of_a_fork_after_import_plan() -> None:
+    done = subprocess.run([sys.executable, "-c", FORKED], capture_output=True, text=True, timeout=120)
+    assert done.stdout.split() == ["0", str(len(rg.plan("sphere", seed=1).times))], done.stderr
+
+
 def resident() -> int:
     """Memory of this process (bytes)."""
     pages = int(Path("/proc/self/statm").read_text().split()[1])

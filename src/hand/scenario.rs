@@ -1,37 +1,84 @@
 //! A scenario to start from: the hand as it was read, a ball where the fingers surround it best, turned by
 //! 20°.
 
+use crate::args::LibraryArgs;
 use crate::outputs::SCENARIO_MARK;
+use crate::{Failure, place, plugins};
+use regrasp::api::Vec3;
 use regrasp::hands::HandOptions;
 use regrasp::world::ObjectPlace;
-use std::fmt::Write;
 use std::path::Path;
 
-/// The text of a scenario that lies at `output`; `fingers` can hold.
-pub fn text(
-    file: &Path,
-    output: &Path,
-    options: &HandOptions,
-    place: &ObjectPlace,
-    (ball, fingers): (f64, usize),
-) -> String {
-    let p = place.p_HO;
-    let position = format!("[{:.4}, {:.4}, {:.4}]", p.x, p.y, p.z);
-    let key = if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml")) { "mjcf" } else { "urdf" };
-    let mut text = format!("{SCENARIO_MARK}\n[hand]\n{key} = {}\n", quoted(&seen_from(file, output)));
-    given(&mut text, options, output);
-    write!(
-        text,
-        "\n[object]\nshape = {{ kind = \"sphere\", radius = {ball} }}\nmass = 0.05\nfriction = \
-         0.8\n\n[start]\npose = {{ position = {position} }}\n\n\
-         [[goal]]\npose = {{ position = {position}, axis = [0.0, 0.0, 1.0], angle_deg = 20.0 }}\n"
-    )
-    .expect("writing to a text does not fail");
-    if fingers == 3 {
-        text += "\n# Three fingers: two hold while one moves, which takes soft \
-         contacts.\n[plugins.contact-model]\nuse = \"soft-finger\"\n";
+/// What the plan of such a scenario bears where the hand's efforts allow it.
+const HOLD: &str = "\n[hold]\nfriction_factor = 0.8\n";
+
+/// Where a scenario's hand comes from.
+pub enum HandSource<'a> {
+    /// The robot's own file, read with these options.
+    Robot(&'a Path, &'a HandOptions),
+    /// A hand file.
+    HandFile(&'a Path),
+}
+
+/// A scenario that is yet to be placed.
+pub struct Draft<'a> {
+    pub source: HandSource<'a>,
+    /// Where it will be written.
+    pub output: &'a Path,
+    /// Radius of the ball (m).
+    pub ball: f64,
+    /// Fingers that can hold.
+    pub fingers: usize,
+}
+
+impl Draft<'_> {
+    /// Its text with the ball at the best place that a plan is found for, and whether one was found; the best
+    /// place by reach where none is.
+    pub fn placed(&self, places: &[ObjectPlace]) -> Result<(String, bool), Failure> {
+        let registry = plugins::registry(&LibraryArgs { load: Vec::new() })?;
+        let name = self.output.display().to_string();
+        let folder = self.output.parent().unwrap_or(Path::new(""));
+        for hold in [HOLD, ""] {
+            let text = |place| self.text(place, hold);
+            if let Some(text) = place::that_plans((&name, folder), &registry, places, text)? {
+                return Ok((text, true));
+            }
+        }
+        let best = places.first().map(|place| place.p_HO).unwrap_or_default();
+        Ok((self.text(best, ""), false))
     }
-    text
+
+    fn text(&self, p: Vec3, hold: &str) -> String {
+        let position = format!("[{:.4}, {:.4}, {:.4}]", p.x, p.y, p.z);
+        let soft = match self.fingers {
+            3 => {
+                "\n# Three fingers: two hold while one moves, which takes soft contacts.\n\
+                 [plugins.contact-model]\nuse = \"soft-finger\"\n"
+            }
+            _ => "",
+        };
+        format!(
+            "{SCENARIO_MARK}\n[hand]\n{hand}\n[object]\nshape = {{ kind = \"sphere\", radius = {ball} }}\n\
+             mass = 0.05\nfriction = 0.8\n{hold}\n[start]\npose = {{ position = {position} }}\n\n\
+             [[goal]]\npose = {{ position = {position}, axis = [0.0, 0.0, 1.0], angle_deg = 20.0 }}\n{soft}",
+            hand = self.hand(),
+            ball = self.ball,
+        )
+    }
+
+    /// The keys of `[hand]`.
+    fn hand(&self) -> String {
+        match self.source {
+            HandSource::HandFile(file) => format!("file = {}\n", quoted(&seen_from(file, self.output))),
+            HandSource::Robot(file, options) => {
+                let is_mjcf = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml"));
+                let key = if is_mjcf { "mjcf" } else { "urdf" };
+                let mut text = format!("{key} = {}\n", quoted(&seen_from(file, self.output)));
+                given(&mut text, options, self.output);
+                text
+            }
+        }
+    }
 }
 
 /// The path of a file as one in the folder of `output` must name it.

@@ -9,14 +9,14 @@ mod hull;
 mod object;
 mod scene;
 mod twin;
+mod workspace;
 
 pub use bodies::{BodyFault, body_count, outward_bodies, rigid_body};
 pub use clearance::SceneClearance;
 pub use error::WorldError;
-pub use hand::{
-    ChainHand, FingerWorkspace, HandError, LinkFrame, LinkFrames, ObjectPlace, finger_workspace, object_place,
-};
+pub use hand::{ChainHand, HandError, LinkFrame, LinkFrames};
 pub use hull::{coarse_hull, convex_hull, convex_pieces};
 pub use object::{Measures, load_object, measure, object_of_mesh, primitive_mesh};
 pub use scene::{World, check_limits, check_problem, check_units};
 pub use twin::{automatic_twin, roughness, twin_within};
+pub use workspace::{FingerWorkspace, ObjectPlace, finger_workspace, object_places};

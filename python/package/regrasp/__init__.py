@@ -21,6 +21,7 @@ from ._errors import (
     StudyError,
     VerificationError,
 )
+from ._figures import Figures
 from ._grasps import Grasps, grasps
 from ._hand import Finger, Hand
 from ._pieces import (
@@ -52,6 +53,7 @@ from ._roles import (
 from ._scenario import Hold, Scenario, scenario_text, scenarios
 from ._shapes import Capsule, Cuboid, Cylinder, Ellipsoid, Mesh, Obstacle, Shape, Sphere, Torus
 from ._spatial import pose
+from ._view import View
 
 load = Plan.load
 
@@ -69,6 +71,7 @@ __all__ = [
     "Cuboid",
     "Cylinder",
     "Ellipsoid",
+    "Figures",
     "Finger",
     "Graph",
     "GraphStrategy",
@@ -105,6 +108,7 @@ __all__ = [
     "Torus",
     "Verdict",
     "VerificationError",
+    "View",
     "closure_margin",
     "compare",
     "conformance",

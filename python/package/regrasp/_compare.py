@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING, Any
 from . import _regrasp
 from ._errors import ArgumentError, StudyError
 from ._planning import Callback, Teller, slot_and_key, whole
+from ._plot import study_figure
 from ._roles import chosen
 from ._scenario import Scenario
 
 if TYPE_CHECKING:
     import pandas
+    from matplotlib.figure import Figure
 
 Level = tuple[str, "str | None", list[tuple[str, str]]]
 
@@ -46,6 +48,13 @@ class Study:
     def summary(self) -> str:
         """The summary with intervals and tests, as Markdown."""
         return (self.folder / "summary.md").read_text()
+
+    def plot(self, figure: Figure | None = None) -> Figure:
+        """Draws which share of each variant's runs is solved and verified within a time, a panel a scenario.
+
+        Needs pandas and matplotlib; `figure` as for :meth:`Plan.plot`.
+        """
+        return study_figure(self.runs, figure)
 
     def _repr_markdown_(self) -> str:
         return self.summary

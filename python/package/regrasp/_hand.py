@@ -17,6 +17,9 @@ from . import _regrasp
 from ._errors import ArgumentError
 from ._spatial import Array, array
 
+#: What a scenario's ``hand`` calls files of these endings; all others are URDF.
+KINDS = {".toml": "file", ".json": "file", ".xml": "mjcf", ".mjcf": "mjcf"}
+
 
 @dataclass(frozen=True)
 class Finger:
@@ -34,7 +37,7 @@ class Finger:
 
 
 class Hand:
-    """A hand: a built-in one, a hand file, or a URDF. Read and checked when it is made.
+    """A hand: a built-in one, a hand file, a URDF or an MJCF. Read and checked when it is made.
 
     Parameters
     ----------
@@ -58,20 +61,18 @@ class Hand:
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Hand:
-        """A hand from a URDF or a hand file.
+        """A hand from a hand file, a URDF or an MJCF.
 
         Parameters
         ----------
         path : path
-            A hand file in TOML or JSON, or a robot description.
+            A hand file (``.toml``, ``.json``), a MuJoCo model (``.xml``, ``.mjcf``), or a URDF.
         **options
             How a robot description is read: `tips`, `fingertip_radius`, `tip_offset`, `palm`, `packages`,
-            `mesh_pieces`, and
-            the limits that it may not say.
+            `keyframe` (of an MJCF), `mesh_pieces`, and the limits that it may not say.
         """
         place = Path(path).absolute()
-        kind = "file" if place.suffix.lower() in {".toml", ".json"} else "urdf"
-        return cls({kind: os.fspath(place), **options})
+        return cls({KINDS.get(place.suffix.lower(), "urdf"): os.fspath(place), **options})
 
     @staticmethod
     def tree_of(hand: Hand | str | Mapping[str, Any]) -> dict[str, Any]:
@@ -106,6 +107,37 @@ class Hand:
         """The fingers, in turn."""
         return [_finger(tree) for tree in self._described["fingers"]]
 
+    @property
+    def joint_names(self) -> list[str]:
+        """Names of all joints, as :meth:`to_urdf` and exported files have them, in the order of
+        :attr:`Plan.joints`: those of the hand, with the finger in front where two are the same.
+        """
+        return list(self._described["joint_names"])
+
+    def to_urdf(self, folder: str | os.PathLike[str] | None = None) -> str:
+        """The hand as URDF, for pinocchio, Drake, PyBullet and others.
+
+        The link ``hand`` has the hand's frame; each fingertip's link is called ``NAME-tip`` after its finger
+        and has its origin at the ball's centre. Masses of links are nominal: hands have none.
+
+        Parameters
+        ----------
+        folder : path, optional
+            Where ``hand.urdf`` and the meshes that it names are written too; it is made where there is none.
+
+        Returns
+        -------
+        str
+            The text of the URDF.
+        """
+        files = self._native.urdf("hand")
+        if folder is not None:
+            place = Path(folder)
+            place.mkdir(parents=True, exist_ok=True)
+            for name, content in files:
+                (place / name.replace(".hand.urdf", ".urdf")).write_bytes(content)
+        return files[0][1].decode()
+
     def _finger(self, finger: int | str) -> int:
         if isinstance(finger, str):
             names = [known.name for known in self.fingers]
@@ -136,6 +168,25 @@ class Hand:
         index, alone = self._finger(finger), np.ndim(joints) == 1
         q = array("joints", np.atleast_2d(np.asarray(joints)), (None, len(self.fingers[index].joints)))
         centers = self._native.fk(index, q)
+        return centers[0] if alone else centers
+
+    def fingertips(self, joints: npt.ArrayLike) -> Array:
+        """Centres of all fingertips in the hand's frame (m).
+
+        Parameters
+        ----------
+        joints : array_like, (N, J) or (J,)
+            Joint positions of all fingers, finger after finger, as :attr:`Plan.joints` has them.
+
+        Returns
+        -------
+        ndarray, (N, F, 3) or (F, 3)
+        """
+        alone = np.ndim(joints) == 1
+        ends = np.cumsum([len(finger.joints) for finger in self.fingers])
+        q = array("joints", np.atleast_2d(np.asarray(joints)), (None, int(ends[-1])))
+        parts = (np.ascontiguousarray(part) for part in np.split(q, ends[:-1], axis=1))
+        centers = np.stack([self._native.fk(i, part) for i, part in enumerate(parts)], axis=1)
         return centers[0] if alone else centers
 
     def jacobian(self, finger: int | str, joints: npt.ArrayLike) -> Array:

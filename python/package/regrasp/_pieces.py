@@ -227,5 +227,10 @@ def _sides(contacts: SurfacePoints) -> tuple[Array, Array]:
 
 
 def sample_grasps(scenario: Any, count: int, **options: Any) -> list[Configuration]:
-    """Random admissible grasps of a scenario: :meth:`Bench.sample_grasps`."""
+    """Random nodes of a scenario's graph, by its own sampler: :meth:`Bench.sample_grasps`.
+
+    That is what a plan's search draws, near start and goals, from which a finger can be lifted.
+    :func:`regrasp.grasps` is for many grasps: distinct, verified, on threads, anywhere that the hand reaches,
+    by a search of its own which no sampler takes part in.
+    """
     return Bench(scenario).sample_grasps(count, **options)

@@ -6,7 +6,8 @@ use super::exact::{self, Solid};
 use super::field::Field;
 use super::object::ObjectBody;
 use super::rod::{Bounds, Rod};
-use crate::hand::LinkFrame;
+use crate::error::WorldError;
+use crate::hand::{ChainHand, LinkFrame};
 use regrasp_api::{Body, Pose, Vec3};
 
 /// One solid of the palm or an obstacle.
@@ -112,5 +113,21 @@ impl Fixed {
         let sides = [Vec3::x(), Vec3::y(), Vec3::z()].into_iter().zip(p_SMiddle.iter());
         toward.is_some_and(separates)
             || sides.into_iter().any(|(axis, &side)| separates(axis * side.signum()))
+    }
+}
+
+/// The palm alone.
+pub(crate) struct Palm(Vec<Fixed>);
+
+impl Palm {
+    /// `wide`: the largest radius of a ball that will be asked about, and the clearance (m).
+    pub fn new(hand: &ChainHand, wide: f64) -> Result<Self, WorldError> {
+        let palm = Placed::read_all(hand.palm_shapes(), "hand.palm")?;
+        Ok(Self(palm.into_iter().map(|placed| Fixed::new(Body::Palm, placed, wide)).collect()))
+    }
+
+    /// Whether a ball at `p_HB` is farther than `clear` (m) from all of the palm.
+    pub fn is_clear_of(&self, p_HB: Vec3, radius: f64, clear: f64) -> bool {
+        self.0.iter().all(|solid| solid.clear_of_rod(&Rod::ball(p_HB, radius), clear))
     }
 }

@@ -46,11 +46,9 @@ mod error;
 mod inverse;
 mod reach;
 mod screw;
-mod workspace;
 
 pub use chain::{LinkFrame, LinkFrames};
 pub use error::HandError;
-pub use workspace::{FingerWorkspace, ObjectPlace, finger_workspace, object_place};
 
 use chain::FingerChain;
 use check::FingerPoses;

@@ -1,6 +1,7 @@
 //! Where the fingertips reach, and where they can reach an object together.
 
-use super::ChainHand;
+use crate::clearance::Palm;
+use crate::hand::ChainHand;
 use regrasp_api::{FingerIndex, FingerJoints, Hand, Random, Vec3};
 use std::collections::BTreeSet;
 
@@ -13,6 +14,8 @@ const PLACES: usize = 16;
 /// How far (m) a fingertip's centre may be from the offset surface of the ball and still count as touching
 /// it.
 const SHELL: f64 = 3e-3;
+/// How far (m) an object is kept from the palm.
+const BESIDE: f64 = 2e-3;
 
 /// Where one fingertip reaches.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,19 +49,19 @@ pub fn finger_workspace(hand: &ChainHand, finger: FingerIndex) -> FingerWorkspac
     FingerWorkspace { lower, upper, volume: cubes.len() as f64 * CUBE.powi(3) }
 }
 
-/// Where the fingertips can best surround a ball of this radius (m); `None` where they cannot.
+/// Where the fingertips can surround a ball of this radius (m) beside the palm, the best place first; none
+/// where they cannot.
 ///
 /// Over a grid: the mean of the directions from which each finger's tip reaches the ball. The quality falls
 /// with the share of postures in which the worst finger touches it, and with the length of the sum of all
-/// fingers' directions, which is zero where they push against each other. Links and palm are kept out of the
-/// ball only roughly: no fingertip that touches from below the palm's side counts more than others. A hint,
-/// no proof: `plan` tells.
-pub fn object_place(hand: &ChainHand, radius: f64) -> Option<ObjectPlace> {
+/// fingers' directions, which is zero where they push against each other. Links are not looked at: a hint, no
+/// proof, as `plan` tells.
+pub fn object_places(hand: &ChainHand, radius: f64) -> Vec<ObjectPlace> {
     let fingers: Vec<Vec<Vec3>> =
         (0..hand.finger_count() as u8).map(|finger| tips(hand, FingerIndex(finger))).collect();
     let all = || fingers.iter().flatten();
-    let lower = all().copied().reduce(|a, b| a.inf(&b))?;
-    let upper = all().copied().reduce(|a, b| a.sup(&b))?;
+    let lower = all().copied().reduce(|a, b| a.inf(&b)).unwrap_or_default();
+    let upper = all().copied().reduce(|a, b| a.sup(&b)).unwrap_or_default();
     let reach = radius + hand.fingertip_radius();
     let step = (upper - lower) / (PLACES - 1) as f64;
     let places = (0..PLACES.pow(3)).map(|i| {
@@ -67,7 +70,11 @@ pub fn object_place(hand: &ChainHand, radius: f64) -> Option<ObjectPlace> {
         lower + step.component_mul(&index)
     });
     let judged = places.map(|p_HO| ObjectPlace { p_HO, quality: quality(&fingers, &p_HO, reach) });
-    judged.filter(|place| place.quality > 0.0).max_by(|a, b| a.quality.total_cmp(&b.quality))
+    let palm = Palm::new(hand, radius + BESIDE).ok();
+    let is_free = |p: &Vec3| palm.as_ref().is_none_or(|palm| palm.is_clear_of(*p, radius, BESIDE));
+    let mut places: Vec<_> = judged.filter(|place| place.quality > 0.0 && is_free(&place.p_HO)).collect();
+    places.sort_by(|a, b| b.quality.total_cmp(&a.quality));
+    places
 }
 
 fn quality(fingers: &[Vec<Vec3>], p_HO: &Vec3, reach: f64) -> f64 {
