@@ -40,6 +40,8 @@ pub(crate) struct ClearanceCheck<'s> {
     lower: Vec<f64>,
     /// For each pair of object and segment where they were closest at their last exact distance, in O.
     nearest: Vec<Gap>,
+    /// Room for lower bounds of all pairs, by which they are asked in turn.
+    bounds: Vec<(f64, usize)>,
     /// Room for halved steps.
     spare: Frames,
     /// How many more halvings there may be: a plan that needs as many is no plan of ours.
@@ -67,6 +69,7 @@ impl<'s> ClearanceCheck<'s> {
             smallest: f64::INFINITY,
             lower: vec![f64::NEG_INFINITY; scene.pairs.len()],
             nearest: vec![nowhere; scene.pairs.len()],
+            bounds: Vec::new(),
             spare: Frames::new(hand),
             halvings_left: MOST_HALVINGS,
         }
@@ -204,19 +207,30 @@ impl<'s> ClearanceCheck<'s> {
     /// The closest pair of those compared at a state, with its exact distance (m), beside the moving
     /// fingertip of a regrasp and the object.
     pub(crate) fn closest(&mut self, leg: &Leg<'_>, frames: &Frames) -> Option<(f64, BodyPair)> {
-        let mut closest: Option<(f64, BodyPair)> = None;
-        for pair in 0..self.scene.pairs.len() {
+        let mut bounds = std::mem::take(&mut self.bounds);
+        bounds.clear();
+        let pairs = 0..self.scene.pairs.len();
+        bounds.extend(
+            pairs.filter(|&pair| self.compared(leg, pair)).map(|pair| (self.balls(pair, frames), pair)),
+        );
+        // The likeliest first: one exact distance then spares most of the others.
+        bounds.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut closest: Option<(f64, usize)> = None;
+        for &(bound, pair) in &bounds {
             let least = closest.map_or(f64::INFINITY, |(distance, _)| distance);
-            if !self.compared(leg, pair) || self.balls(pair, frames) >= least {
-                continue;
+            if bound >= least {
+                break;
             }
             let distance = self.exact(pair, frames, true);
             if distance < least {
-                let (a, b) = self.scene.pairs[pair];
-                closest = Some((distance, (self.scene.bodies[a].body, self.scene.bodies[b].body)));
+                closest = Some((distance, pair));
             }
         }
-        closest
+        self.bounds = bounds;
+        closest.map(|(distance, pair)| {
+            let (a, b) = self.scene.pairs[pair];
+            (distance, (self.scene.bodies[a].body, self.scene.bodies[b].body))
+        })
     }
 
     /// The exact distance of a pair (m); not positive where the bodies overlap.
@@ -237,12 +251,17 @@ impl<'s> ClearanceCheck<'s> {
         cores - first.radius - second.radius
     }
 
-    /// A lower bound of a pair's distance (m) from balls around both.
+    /// A lower bound of a pair's distance (m) from balls around both, or the box that one of them is.
     fn balls(&self, pair: usize, frames: &Frames) -> f64 {
         let (a, b) = self.scene.pairs[pair];
-        let center = |body: usize, p: Vec3| self.scene.pose(body, frames) * Point3::from(p);
-        match (self.scene.bodies[a].ball, self.scene.bodies[b].ball) {
-            (Some((p, r)), Some((q, s))) => (center(a, p) - center(b, q)).norm() - r - s,
+        let (first, second) = (&self.scene.bodies[a], &self.scene.bodies[b]);
+        let (X_HA, X_HB) = (self.scene.pose(a, frames), self.scene.pose(b, frames));
+        match (first.ball, second.ball) {
+            (Some((p, r)), Some((q, s))) => {
+                let [p, q] = [(X_HA, p), (X_HB, q)].map(|(X, p)| (X * Point3::from(p)).coords);
+                let balls = (p - q).norm() - r - s;
+                balls.max(first.core.box_to(X_HA, &q) - s).max(second.core.box_to(X_HB, &p) - r)
+            }
             _ => f64::NEG_INFINITY,
         }
     }

@@ -146,14 +146,42 @@ impl HoldingCheck {
         {
             return Ok(slack);
         }
-        let mut forces = Vec::with_capacity(wanted.len());
-        for wanted in &wanted {
-            let most = self.load.max_normal_force.map(|most| most / self.unit);
-            let best = socp::best_within(held, self.length, self.unit, most, wanted);
-            forces.push(best.ok_or(f64::NEG_INFINITY)?.0);
-        }
+        let forces = self.solve(held, &correction, &wanted)?;
         self.solved = self.check(held, &correction, forces, &wanted)?;
         Ok(self.solved)
+    }
+
+    /// Forces for each of the wanted wrenches, near to the best ones: those that the solver found for one
+    /// often hold another one too, brought to its wrench.
+    fn solve(
+        &self,
+        held: &Held,
+        correction: &Correction,
+        wanted: &[Vector6<f64>],
+    ) -> Result<Vec<Forces>, f64> {
+        let most = self.load.max_normal_force.map(|most| most / self.unit);
+        let mut solved: Vec<(Forces, f64)> = Vec::new();
+        let mut all = Vec::with_capacity(wanted.len());
+        for wanted in wanted {
+            let enough = solved.iter().map(|(_, slack)| DWINDLED * slack).fold(f64::INFINITY, f64::min);
+            let enough = enough.max(LEAST_SLACK);
+            let brought = |(forces, _): &(Forces, f64)| correction.towards(&held.contacts, forces, wanted);
+            let mut known = solved.iter().rev().map(brought);
+            all.push(match known.find(|forces| self.least_slack(held, forces) > enough) {
+                Some(forces) => forces,
+                None => {
+                    let best = socp::best_within(held, self.length, self.unit, most, wanted);
+                    let (forces, slack) = best.ok_or(f64::NEG_INFINITY)?;
+                    solved.push((forces, slack));
+                    forces
+                }
+            });
+        }
+        Ok(all)
+    }
+
+    fn least_slack(&self, held: &Held, forces: &Forces) -> f64 {
+        (0..held.contacts.len()).map(|i| self.slack(held, i, forces)).fold(f64::INFINITY, f64::min)
     }
 
     /// The wrenches that the contacts must give, over the unit.

@@ -1,9 +1,10 @@
 //! Fewer facets, each near the true mesh.
 
 use super::editable::{Editable, unit_normal};
+use super::near::Near;
 use super::quadric::Quadric;
 use super::touch::{Touch, on_facet};
-use regrasp_api::Vec3;
+use regrasp_api::{Mesh, Vec3};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -11,6 +12,9 @@ use std::collections::BinaryHeap;
 const LEAST_TURN: f64 = 0.3;
 /// Places that are looked at on a new facet are at most this many radii apart.
 const SPACING: f64 = 0.08;
+/// An end of an edge is as good a place as the best if it is farther off by at most this part of the
+/// tolerance.
+const AS_GOOD: f64 = 0.02;
 
 /// A pair of vertices that may become one, cheapest first; ties in the order of the numbers.
 type Pair = Reverse<(u64, u32, u32, u32)>;
@@ -20,6 +24,7 @@ struct Collapse<'a> {
     touch: &'a Touch,
     /// How far (m) the new facets may be from the true mesh.
     tolerance: f64,
+    near: &'a Near<'a>,
     quadrics: Vec<Quadric>,
     /// How often each vertex has moved: pairs from before are out of date.
     versions: Vec<u32>,
@@ -28,10 +33,11 @@ struct Collapse<'a> {
 
 /// Merges vertices, the least costly first, as long as the facets stay within `tolerance` (m) of the true
 /// mesh.
-pub(super) fn collapse(surface: &mut Editable, touch: &Touch, tolerance: f64) {
-    let quadrics = quadrics(surface);
+pub(super) fn collapse(surface: &mut Editable, mesh: &Mesh, touch: &Touch, tolerance: f64) {
+    let (quadrics, near) = (quadrics(surface), Near::new(mesh, tolerance));
     let versions = vec![0; surface.vertices.len()];
-    let mut run = Collapse { surface, touch, tolerance, quadrics, versions, queue: BinaryHeap::new() };
+    let queue = BinaryHeap::new();
+    let mut run = Collapse { surface, touch, tolerance, near: &near, quadrics, versions, queue };
     for vertex in 0..run.surface.vertices.len() as u32 {
         run.offer(vertex, |other| other > vertex);
     }
@@ -80,7 +86,11 @@ impl Collapse<'_> {
         let length = (q - p).norm();
         let candidates = [best, middle, p, q].into_iter().filter(|x| (x - middle).norm() <= length);
         let judged = candidates.map(|x| (x, quadric.error(&x)));
-        judged.min_by(|a, b| a.1.total_cmp(&b.1)).expect("the middle is always near enough")
+        let least = judged.min_by(|a, b| a.1.total_cmp(&b.1)).expect("the middle is always near enough");
+        // Where an end is as good, as in all that is flat, half of the facets stay as they are.
+        let ends = [p, q].map(|x| (x, quadric.error(&x)));
+        let end = if ends[0].1 <= ends[1].1 { ends[0] } else { ends[1] };
+        if end.1.sqrt() <= least.1.sqrt() + AS_GOOD * self.tolerance { end } else { least }
     }
 
     fn merge(&mut self, u: u32, v: u32) {
@@ -118,29 +128,32 @@ impl Collapse<'_> {
     /// Whether the facets that are kept neither turn over nor leave the true mesh when both ends move to
     /// `place`.
     fn is_near(&self, place: &Vec3, u: u32, v: u32, kept: &[u32]) -> bool {
-        let near = |p: &Vec3| self.touch.height(p).abs() <= self.tolerance;
-        let stays = |&facet: &u32| {
-            let corners = self.surface.corners(facet);
-            let moved = corners
-                .map(|vertex| if vertex == u || vertex == v { *place } else { self.surface.point(vertex) });
-            let Some(n) = unit_normal(moved) else { return false };
-            let before = self.surface.normal(corners);
+        let moves = |vertex: u32| (vertex == u || vertex == v) && self.surface.point(vertex) != *place;
+        let changed = kept.iter().map(|&facet| self.surface.corners(facet));
+        let changed: Vec<_> = changed.filter(|corners| corners.iter().any(|&vertex| moves(vertex))).collect();
+        let moved = |corners: &[u32; 3]| {
+            corners.map(|vertex| if moves(vertex) { *place } else { self.surface.point(vertex) })
+        };
+        let stays = |corners: &[u32; 3]| {
+            let Some(n) = unit_normal(moved(corners)) else { return false };
+            let before = self.surface.normal(*corners);
             before.is_none_or(|before| before.dot(&n) > LEAST_TURN)
         };
-        let covered = |&facet: &u32| {
-            let corners = self.surface.corners(facet);
-            let moved = corners
-                .map(|vertex| if vertex == u || vertex == v { *place } else { self.surface.point(vertex) });
-            let mut is_near = true;
-            let Some(n) = unit_normal(moved) else { return false };
-            // Facets that have turned over have the solid above them.
-            let above = (moved[0] + moved[1] + moved[2]) / 3.0 + n * (3.0 * self.tolerance);
-            if self.touch.height(&above) <= 0.0 {
-                return false;
-            }
-            on_facet(moved, SPACING * self.touch.radius, |p| is_near = is_near && near(p));
-            is_near
-        };
-        kept.iter().all(stays) && near(place) && kept.iter().all(covered)
+        // Most of those that are not near are not so in their middle.
+        let likely = |corners: &[u32; 3]| self.near.has(&(moved(corners).iter().sum::<Vec3>() / 3.0));
+        changed.iter().all(stays)
+            && self.near.has(place)
+            && changed.iter().all(likely)
+            && changed.iter().all(|corners| self.is_covered(moved(corners)))
+    }
+
+    /// Whether all of a facet is near the true mesh, which has its solid below it.
+    fn is_covered(&self, corners: [Vec3; 3]) -> bool {
+        let Some(n) = unit_normal(corners) else { return false };
+        let mut is_near = true;
+        on_facet(corners, SPACING * self.touch.radius, |p| is_near = is_near && self.near.has(p));
+        // Facets that have turned over have the solid above them.
+        let above = corners.iter().sum::<Vec3>() / 3.0 + n * (3.0 * self.tolerance);
+        is_near && self.touch.height(&above) > 0.0
     }
 }

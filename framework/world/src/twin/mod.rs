@@ -11,6 +11,7 @@ mod collapse;
 mod editable;
 mod fill;
 mod hull;
+mod near;
 mod quadric;
 mod roughness;
 mod touch;
@@ -70,7 +71,7 @@ fn dented(mesh: &Mesh, touch: &Touch, tolerance: f64) -> Option<Twin> {
     // used up.
     [0.8, 0.4].into_iter().find_map(|share| {
         let mut surface = editable::Editable::new(mesh);
-        collapse::collapse(&mut surface, touch, 0.4 * share * tolerance);
+        collapse::collapse(&mut surface, mesh, touch, 0.4 * share * tolerance);
         fill::fill(&mut surface, touch, share * tolerance);
         let candidate = surface.mesh()?;
         accepted(candidate, touch, tolerance)
