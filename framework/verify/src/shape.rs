@@ -72,8 +72,8 @@ impl Core {
         }
     }
 
-    /// How far a point in H is from a box whose body is at `X_HB` (m), 0 inside; minus infinity for what is no
-    /// box.
+    /// How far a point in H is from a box whose body is at `X_HB` (m), 0 inside; minus infinity for what is
+    /// no box.
     pub(crate) fn box_to(&self, X_HB: &Pose, p_H: &Vec3) -> f64 {
         let Self::Cuboid { X, half } = self else { return f64::NEG_INFINITY };
         let p_B = X_HB.inverse_transform_point(&Point3::from(*p_H));
