@@ -4,7 +4,8 @@ use super::convex::Verdict;
 use super::exact::MeshSolid;
 use super::rod::{Bounds, Rod};
 use regrasp_api::Vec3;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 
 /// Cells along the longest side of the grid: at most 14,000 exact distances. A finer grid saves little in the
 /// search, where the exact distance decides beside it, and costs its third power here.
@@ -23,7 +24,13 @@ pub(crate) struct Field {
     /// Signed distances at the cells' centres (m), x running fastest; more than a cell deep inside, upper
     /// bounds of them.
     values: Vec<f64>,
+    /// The same at the centres of smaller cells, each computed when it is first asked for; 0 where it was not
+    /// yet, else the bits of the distance. It depends on nothing else, so that threads may race for it.
+    fine: OnceLock<Box<[AtomicU64]>>,
 }
+
+/// Smaller cells along the edge of a cell.
+const FINE: usize = 4;
 
 /// Along a rod, no step is shorter than this (m): a rod that does touch is found out quickly, and one that
 /// does not, but comes that near to being too close, is left to the exact distance.
@@ -54,7 +61,7 @@ impl Field {
                 values.push(before);
             }
         }
-        Self { solid, grid, cell, counts, values }
+        Self { solid, grid, cell, counts, values, fine: OnceLock::new() }
     }
 
     /// Bounds of the signed distance (m) at a point.
@@ -70,6 +77,36 @@ impl Field {
         let value = self.values[i + self.counts[0] * (j + self.counts[1] * k)];
         let off = (place - Vec3::new(x + 0.5, y + 0.5, z + 0.5)).norm() * self.cell;
         (value - off, value + off)
+    }
+
+    /// Closer bounds of the signed distance (m) at a point of the grid, which is at most `limit` in size.
+    fn fine_bounds(&self, p: &Vec3, limit: f64) -> Option<(f64, f64)> {
+        let cell = self.cell / FINE as f64;
+        let place = (p - self.grid.lower) / cell;
+        let whole = place.map(f64::floor);
+        let counts = self.counts.map(|count| count * FINE);
+        if !(0..3).all(|axis| whole[axis] >= 0.0 && whole[axis] < counts[axis] as f64) {
+            return None;
+        }
+        let [i, j, k] = [whole.x as usize, whole.y as usize, whole.z as usize];
+        let values = self.fine.get_or_init(|| {
+            let zeros = vec![0; counts.iter().product()];
+            zeros.into_iter().map(AtomicU64::new).collect()
+        });
+        let center = whole + Vec3::repeat(0.5);
+        let off = (place - center).norm() * cell;
+        let entry = &values[i + counts[0] * (j + counts[1] * k)];
+        let known = entry.load(Ordering::Relaxed);
+        let value = if known != 0 {
+            f64::from_bits(known)
+        } else {
+            let center = self.grid.lower + center * cell;
+            let value = self.solid.signed_distance_within(&center, limit + off);
+            // Zero has a sign that makes its bits differ from those of no answer.
+            entry.store(if value == 0.0 { -0.0_f64 } else { value }.to_bits(), Ordering::Relaxed);
+            value
+        };
+        Some((value - off, value + off))
     }
 
     /// Whether the rod, given in the mesh's frame, keeps the solid at more than `clear` (m).
@@ -95,13 +132,17 @@ impl Field {
         let (mut done, mut verdict) = (0.0, Verdict::Free);
         loop {
             let p = from + direction * done;
-            let (lower, upper) = self.bounds(&p);
+            let (mut lower, mut upper) = self.bounds(&p);
+            let may_end = |step: f64| done >= length || done + step > length;
+            let is_short = |step: f64, cell: f64| step <= 0.0 || (step < 0.5 * cell && !may_end(step));
+            if upper > apart && is_short(lower - apart, self.cell) {
+                (lower, upper) = self.fine_bounds(&p, upper.max(-lower)).unwrap_or((lower, upper));
+            }
             if upper <= apart {
                 return Verdict::Close;
             }
             let mut step = lower - apart;
-            let may_end = |step: f64| done >= length || done + step > length;
-            if step <= 0.0 || (step < 0.5 * self.cell && !may_end(step)) {
+            if is_short(step, self.cell / FINE as f64) {
                 // The grid's bound makes the exact distance cheaper, too.
                 step = self.solid.signed_distance_within(&p, upper.max(-lower)) - apart;
             }
