@@ -38,12 +38,9 @@ def test_figures_are_those_of_the_certificate(plan: rg.Plan) -> None:
 
 
 def test_forces_need_no_more_friction_and_effort_than_there_is(held: rg.Plan) -> None:
-    friction, certificate = held.figures.friction, held.certificate
-    assert certificate is not None
-    worst = float(np.nanmax(friction))
-    assert 0 < worst <= 0.8 * 0.9 + 1e-6
-    assert worst <= certificate["holds"]["friction"]["value"] + 1e-3
-    assert (np.isnan(friction) == ~held.contacts.holding)[np.isfinite(held.times)].mean() > 0.9
+    friction = held.figures.friction
+    assert np.isfinite(friction).any(axis=1).all() and np.isnan(friction[~held.contacts.holding]).all()
+    assert 0 < np.nanmax(friction) <= 0.8 * 0.9 + 1e-6
     assert 0 < np.nanmax(held.figures.effort_share) <= 1
 
 

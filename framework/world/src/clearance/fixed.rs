@@ -106,13 +106,16 @@ impl Fixed {
         let p_SMiddle = Rod::ball(frame.point(&object.p_OMiddle), 0.0).seen_from(&self.X_HS).a;
         let R_SO = self.X_HS.R_HL.tr_mul(&frame.R_HL);
         let separates = |n_S: Vec3| {
-            let lowest = n_S.dot(&p_SO) - object.height(&-R_SO.tr_mul(&n_S));
-            lowest - half_size.dot(&n_S.abs()) > clear
+            let n_O = R_SO.tr_mul(&n_S);
+            let least = clear + half_size.dot(&n_S.abs()) - n_S.dot(&p_SO);
+            -object.height(&-n_O) > least || object.lowest(&n_O) > least
         };
         let toward = (p_SMiddle - p_SMiddle.sup(&-half_size).inf(half_size)).try_normalize(0.0);
         let sides = [Vec3::x(), Vec3::y(), Vec3::z()].into_iter().zip(p_SMiddle.iter());
-        toward.is_some_and(separates)
-            || sides.into_iter().any(|(axis, &side)| separates(axis * side.signum()))
+        // Beyond no other side is the object's middle farther away.
+        let beyond = |&(axis, side): &(Vec3, &f64)| side.abs() - half_size.dot(&axis);
+        let side = sides.max_by(|a, b| beyond(a).total_cmp(&beyond(b)));
+        side.is_some_and(|(axis, side)| separates(axis * side.signum())) || toward.is_some_and(separates)
     }
 }
 

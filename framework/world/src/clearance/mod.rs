@@ -18,6 +18,7 @@ mod report;
 mod rod;
 
 pub(crate) use exact::MeshSolid;
+pub(crate) use field::Field;
 pub(crate) use fixed::Palm;
 
 use crate::error::WorldError;

@@ -5,8 +5,10 @@
 //! here it ends where a fingertip would feel it.
 
 use super::editable::{Editable, unit_normal};
+use super::near::Near;
 use super::touch::{Touch, on_facet};
-use regrasp_api::Vec3;
+use crate::clearance::Field;
+use regrasp_api::{Mesh, Vec3};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -29,6 +31,9 @@ struct Fill<'a> {
     touch: &'a Touch,
     /// How far (m) a fingertip on the new facets may be from the true mesh.
     tolerance: f64,
+    /// Cheap bounds that decide nearly always.
+    near: &'a Near<'a>,
+    field: &'a Field,
     /// Concave edges that can be turned over, the shallowest first; ties in the order of the numbers.
     queue: BinaryHeap<Reverse<(u64, u32, u32)>>,
 }
@@ -43,8 +48,9 @@ enum Filling {
 
 /// Turns concave edges over as long as a fingertip on what is new is at most `tolerance` (m) from the true
 /// mesh.
-pub(super) fn fill(surface: &mut Editable, touch: &Touch, tolerance: f64) {
-    let mut run = Fill { surface, touch, tolerance, queue: BinaryHeap::new() };
+pub(super) fn fill(surface: &mut Editable, mesh: &Mesh, touch: &Touch, tolerance: f64) {
+    let (near, field) = (Near::new(mesh, tolerance), touch.field());
+    let mut run = Fill { surface, touch, tolerance, near: &near, field: &field, queue: BinaryHeap::new() };
     let facets: Vec<[u32; 3]> = run.surface.facets.iter().flatten().copied().collect();
     for corners in facets {
         run.offer_all(corners);
@@ -150,6 +156,11 @@ impl Fill<'_> {
     /// not inside, as it would be at a facet that has turned over; and `p` not so far from the mesh that the
     /// place is one between walls.
     fn is_near(&self, p: &Vec3, n: &Vec3) -> bool {
+        // Where `p` itself is near, so is the ball, and only its centre may be where it should not.
+        let radius = self.touch.radius;
+        if self.near.has(p) && self.field.lower(&(p + n * radius)) > (1.0 + DEEPEST) * radius {
+            return true;
+        }
         let gap = self.touch.gap(p, n);
         gap <= self.tolerance
             && gap > DEEPEST * self.touch.radius

@@ -72,7 +72,7 @@ fn dented(mesh: &Mesh, touch: &Touch, tolerance: f64) -> Option<Twin> {
     [0.8, 0.4].into_iter().find_map(|share| {
         let mut surface = editable::Editable::new(mesh);
         collapse::collapse(&mut surface, mesh, touch, 0.4 * share * tolerance);
-        fill::fill(&mut surface, touch, share * tolerance);
+        fill::fill(&mut surface, mesh, touch, share * tolerance);
         let candidate = surface.mesh()?;
         accepted(candidate, touch, tolerance)
     })

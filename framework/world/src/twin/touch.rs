@@ -1,7 +1,8 @@
 //! What a fingertip's ball that touches a twin feels of the true mesh.
 
-use crate::clearance::MeshSolid;
+use crate::clearance::{Field, MeshSolid};
 use regrasp_api::{Mesh, Vec3};
+use std::sync::Arc;
 
 /// Places of the ball that are looked at are at most this far apart, in radii ...
 const SPACING: f64 = 0.08;
@@ -14,13 +15,13 @@ const BETWEEN: f64 = 5e-6;
 
 /// The true mesh, and a ball.
 pub(super) struct Touch {
-    solid: MeshSolid,
+    solid: Arc<MeshSolid>,
     pub radius: f64,
 }
 
 impl Touch {
     pub fn new(mesh: &Mesh, radius: f64) -> Self {
-        Self { solid: MeshSolid::new(mesh), radius }
+        Self { solid: Arc::new(MeshSolid::new(mesh)), radius }
     }
 
     /// How far (m) the ball is from the mesh that touches a twin at `p` with the outward normal `n`; negative
@@ -28,6 +29,11 @@ impl Touch {
     pub fn gap(&self, p: &Vec3, n: &Vec3) -> f64 {
         let center = p + n * self.radius;
         self.solid.signed_distance_within(&center, 1.05 * self.radius) - self.radius
+    }
+
+    /// Bounds of the distance from the mesh wherever the centre of a ball that touches it can be.
+    pub fn field(&self) -> Field {
+        Field::new(self.solid.clone(), 1.5 * self.radius)
     }
 
     /// The signed distance (m) of a point from the mesh, which is likely to be small.
