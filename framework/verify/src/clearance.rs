@@ -11,7 +11,7 @@
 use crate::hand::Chains;
 use crate::scene::Scene;
 use crate::shape::{self, Core};
-use crate::solid::Gap;
+use crate::solid::{Gap, Solid};
 use crate::touch::Touch;
 use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
@@ -40,12 +40,35 @@ pub(crate) struct ClearanceCheck<'s> {
     lower: Vec<f64>,
     /// For each pair of object and segment where they were closest at their last exact distance, in O.
     nearest: Vec<Gap>,
+    /// For each pair of object and segment what the two planes between them were put up by.
+    supports: Vec<[Supported; 2]>,
     /// Room for lower bounds of all pairs, by which they are asked in turn.
     bounds: Vec<(f64, usize)>,
     /// Room for halved steps.
     spare: Frames,
     /// How many more halvings there may be: a plan that needs as many is no plan of ours.
     halvings_left: usize,
+}
+
+/// How far the object reaches in a direction, remembered: the next one asked about is hardly another.
+#[derive(Clone, Copy, Default)]
+struct Supported {
+    n_O: Vec3,
+    support: f64,
+}
+
+impl Supported {
+    /// The largest of `n_O · v` over the solid's vertices (m), which are at most `reach` from the origin, or
+    /// an upper bound of it that is no more than `enough`.
+    fn support(&mut self, solid: &Solid, n_O: &Vec3, reach: f64, enough: f64) -> f64 {
+        // Turned by so much, no vertex rises by more than that times its distance.
+        let loose = self.support + reach * (n_O - self.n_O).norm();
+        if loose <= enough {
+            return loose;
+        }
+        *self = Self { n_O: *n_O, support: solid.support(n_O) };
+        self.support
+    }
 }
 
 /// A pair on one step of the plan.
@@ -69,6 +92,7 @@ impl<'s> ClearanceCheck<'s> {
             smallest: f64::INFINITY,
             lower: vec![f64::NEG_INFINITY; scene.pairs.len()],
             nearest: vec![nowhere; scene.pairs.len()],
+            supports: vec![Default::default(); scene.pairs.len()],
             bounds: Vec::new(),
             spare: Frames::new(hand),
             halvings_left: MOST_HALVINGS,
@@ -268,7 +292,13 @@ impl<'s> ClearanceCheck<'s> {
 
     /// A cheap lower bound of a pair's distance (m): balls around both, or a plane between object and
     /// segment. Stops at the first above `floor`.
-    fn bound(&self, pair: usize, frames: &Frames, touches: &[Option<Touch>; MAX_FINGERS], floor: f64) -> f64 {
+    fn bound(
+        &mut self,
+        pair: usize,
+        frames: &Frames,
+        touches: &[Option<Touch>; MAX_FINGERS],
+        floor: f64,
+    ) -> f64 {
         let (a, b) = self.scene.pairs[pair];
         let (first, second) = (&self.scene.bodies[a], &self.scene.bodies[b]);
         let (X_HA, X_HB) = (self.scene.pose(a, frames), self.scene.pose(b, frames));
@@ -282,9 +312,12 @@ impl<'s> ClearanceCheck<'s> {
                 Body::Link(finger, _) => touches[finger.index()].map(|touch| touch.n_O),
                 _ => None,
             };
-            for n in [touch, Some(self.nearest[pair].direction)].into_iter().flatten() {
-                let plane = ends[0].dot(&n).min(ends[1].dot(&n)) - solid.support(&n) - second.radius;
-                bound = bound.max(plane);
+            for (k, n) in [touch, Some(self.nearest[pair].direction)].into_iter().enumerate() {
+                let Some(n) = n else { continue };
+                let above = ends[0].dot(&n).min(ends[1].dot(&n)) - second.radius;
+                let support =
+                    self.supports[pair][k].support(solid, &n, self.scene.object_reach, above - floor);
+                bound = bound.max(above - support);
                 if bound > floor {
                     break;
                 }

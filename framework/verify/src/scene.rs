@@ -18,7 +18,7 @@ pub(crate) struct Scene {
     /// enter it.
     pub(crate) bound: f64,
     /// Largest distance of the object's surface from its frame's origin (m).
-    object_reach: f64,
+    pub(crate) object_reach: f64,
     pub(crate) bodies: Vec<Solidity>,
     /// Indices of two bodies that may not touch.
     pub(crate) pairs: Vec<(usize, usize)>,

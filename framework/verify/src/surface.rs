@@ -13,6 +13,7 @@ use regrasp_api::{
     ContactSurface, ContactSurfaceWord, MAX_FINGERS, Mesh, ObjectModel, ObjectShape, Twin, Vec3, mesh_digest,
 };
 use regrasp_plan::{Place, Plan};
+use std::thread;
 
 /// The largest bound (m) that a twin may have unasked.
 const FARTHEST: f64 = 3e-4;
@@ -20,6 +21,8 @@ const FARTHEST: f64 = 3e-4;
 const SPACING: f64 = 0.1;
 /// ... or there are about as many as this.
 const MOST_PLACES: f64 = 40_000.0;
+/// No more threads than this look.
+const MOST_THREADS: usize = 8;
 /// How deep (m) the ball may sink into the twin at a place where it can be.
 const SINK: f64 = 1e-6;
 
@@ -90,22 +93,37 @@ impl SurfaceCheck {
     }
 }
 
-/// The farthest (m), on either side, that a ball touching the twin is from touching the object.
+/// The farthest (m), on either side, that a ball touching the twin is from touching the object: looked for on
+/// all cores, which share the facets.
 fn all_over(scene: &Scene, radius: f64) -> f64 {
+    let cores = thread::available_parallelism().map_or(1, |cores| cores.get().min(MOST_THREADS)) as u32;
+    let spacing = (SPACING * radius).max((scene.touched.area() / MOST_PLACES).sqrt());
+    let share = |core: u32| {
+        let facets = (core..scene.touched.facet_count()).step_by(cores as usize);
+        let mut near = 0;
+        facets.fold(0.0f64, |worst, facet| worst_on(scene, radius, spacing, facet, &mut near, worst))
+    };
+    thread::scope(|scope| {
+        let others: Vec<_> = (1..cores).map(|core| scope.spawn(move || share(core))).collect();
+        // A thread that panics found nothing good.
+        let others = others.into_iter().map(|other| other.join().unwrap_or(f64::NAN));
+        let worse = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) };
+        others.fold(share(0), worse)
+    })
+}
+
+/// The same over one facet, or `worst` where that is more; `near` is where to look first.
+fn worst_on(scene: &Scene, radius: f64, spacing: f64, facet: u32, near: &mut u32, mut worst: f64) -> f64 {
     let twin = &scene.touched;
-    let spacing = (SPACING * radius).max((twin.area() / MOST_PLACES).sqrt());
-    let (mut worst, mut near) = (0.0f64, 0);
-    for facet in 0..twin.facet_count() {
-        let (corners, n) = twin.corners(facet);
-        let longest = (0..3).map(|k| (corners[(k + 1) % 3] - corners[k]).norm()).fold(0.0, f64::max);
-        let pieces = (longest / spacing).ceil().clamp(1.0, 1000.0) as usize;
-        for p in places(corners, pieces) {
-            let center = p + n * radius;
-            let touch = Touch::of_object(scene, &center, radius, near);
-            near = touch.facet;
-            if touch.gap.abs() > worst && is_free(twin, &center, radius, facet) {
-                worst = touch.gap.abs();
-            }
+    let (corners, n) = twin.corners(facet);
+    let longest = (0..3).map(|k| (corners[(k + 1) % 3] - corners[k]).norm()).fold(0.0, f64::max);
+    let pieces = (longest / spacing).ceil().clamp(1.0, 1000.0) as usize;
+    for p in places(corners, pieces) {
+        let center = p + n * radius;
+        let touch = Touch::of_object(scene, &center, radius, *near);
+        *near = touch.facet;
+        if touch.gap.abs() > worst && is_free(twin, &center, radius, facet) {
+            worst = touch.gap.abs();
         }
     }
     worst
