@@ -8,7 +8,7 @@ use crate::touch::Touch;
 use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use nalgebra::Point3;
-use regrasp_api::{MAX_FINGERS, Pose, Tolerances, Vec3};
+use regrasp_api::{LONGEST_JUMP, MAX_FINGERS, Pose, Tolerances, Vec3};
 use regrasp_plan::{ContactRecord, Extreme, HoldsAt, Place, TransferLaw};
 
 /// The gauges of all contacts.
@@ -109,7 +109,12 @@ impl<'s> ContactChecks<'s> {
             closure: Gauge::new("closure", "m", Side::AtMost, tolerances.closure),
             normals: Gauge::new("normals", "rad", Side::AtMost, tolerances.normal),
             slip: Gauge::new("slip", "m", Side::AtMost, tolerances.slip),
-            jumps: Gauge::new("contact-jumps", "m", Side::AtMost, tolerances.closure),
+            jumps: Gauge::new(
+                "contact-jumps",
+                "m",
+                Side::AtMost,
+                tolerances.closure.max(LONGEST_JUMP * hand.tip_radius),
+            ),
             law,
             rolling: [None; MAX_FINGERS],
             facets: [0; MAX_FINGERS],
@@ -194,7 +199,8 @@ impl<'s> ContactChecks<'s> {
             return;
         };
         // Closest points of a convex surface move no farther than the centre does: more is a jump over a
-        // concave edge.
+        // concave edge, where the ball touches on both sides. Over a mild one it rolls on: the grasps before
+        // and behind are both looked at, and the material points of neither side move.
         let step = (p_OTip - now.p_OTip).norm();
         self.jumps.note(((touch.p_OC - now.touch.p_OC).norm() - step).max(0.0), &place);
         if sample == 0 {

@@ -32,7 +32,7 @@ use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 /// | `closure` | holding fingertips touch the surface, where the plan says and on the fingertip where it says |
 /// | `normals` | the plan's normals are those of the surface |
 /// | `slip` | no contact slips in sum from its finger's touch-down to its lift, over however many segments; a regrasp that does not rise to the lift height counts as sliding; by the law of fixed points, none leaves its place on the object |
-/// | `contact-jumps` | no contact point jumps in a transfer |
+/// | `contact-jumps` | no contact point jumps in a transfer but in a dent, where the fingertip touches both sides at once |
 /// | `contact-surface` | where contacts live on a twin of the mesh: a fingertip that touches it is no farther from the mesh, and enters it no deeper, than the bound that the plan states; at every sample of the motion, and all over the twin |
 /// | `lift`, `touch-travel` | a moving fingertip rises until it is lifted, and does not slide while it touches |
 /// | `clearance` | every pair that may not touch keeps its distance, also between the samples |

@@ -29,8 +29,14 @@ const PROBE_LIFT: f64 = 1e-3;
 /// nearly; then which of the two is the contact is a matter of rounding, and the contact may jump from one to
 /// the other. Two places closer together than half of `closure` (m) are one.
 pub(crate) fn touches_once(surface: &dyn SurfaceParam, contact: &Contact, radius: f64, closure: f64) -> bool {
+    second_touch(surface, contact, radius) <= 0.5 * closure
+}
+
+/// How far (m) from the contact the second place is that a fingertip's ball of `radius` (m) touches, or
+/// nearly; next to nothing where it touches once.
+pub(crate) fn second_touch(surface: &dyn SurfaceParam, contact: &Contact, radius: f64) -> f64 {
     let off = surface.project(&contact.tip_center(radius + PROBE_LIFT), Some(contact.facet)).contact;
-    (off.p_OC - contact.p_OC).norm() <= 0.5 * closure
+    (off.p_OC - contact.p_OC).norm()
 }
 
 /// One index of a bisection, between two that came before it.

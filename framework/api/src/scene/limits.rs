@@ -3,6 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// How far (radii of the fingertip) a contact may jump in a transfer: in a dent, where the fingertip touches
+/// both sides at once and rolls on upon the other. Its normal turns by about as much (rad).
+pub const LONGEST_JUMP: f64 = 0.4;
+
 /// What a plan must keep; the verifier holds it to these.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]

@@ -1,8 +1,8 @@
 //! Whether a contact jumps, as it does where the fingertip leaves one facet of a concave edge for the other.
 
 use super::step::Roller;
-use crate::common::touches_once;
-use regrasp_api::{Contact, Mesh, Vec3};
+use crate::common::second_touch;
+use regrasp_api::{Contact, LONGEST_JUMP, Mesh, Vec3};
 
 /// Halvings of a step after which a jump would be shorter than what the closure bound lets pass.
 const MOST_HALVINGS: usize = 8;
@@ -13,18 +13,41 @@ pub(super) fn is_convex(mesh: &Mesh) -> bool {
     2 * mesh.vertices().len() == mesh.facets().len() + 4 && mesh.is_locally_convex()
 }
 
+/// Where a fingertip's ball touches beside its contact.
+pub(super) enum Second {
+    /// Nowhere.
+    None,
+    /// Nearly, so close by that the contact may jump there: which of the two is the contact is a matter of
+    /// rounding here, and clear a little before or behind.
+    Near,
+    /// Nearly, too far away.
+    Far,
+}
+
 impl Roller<'_> {
-    /// Whether the contact point jumps by more than the closure bound between two contacts of one rolling
+    /// Whether the contact point jumps farther than a plan allows between two contacts of one rolling
     /// fingertip.
     pub fn jumps(&self, a: &Contact, b: &Contact) -> bool {
         let project = |p_OF: &Vec3, near: u32| self.task.surface.project(p_OF, Some(near)).contact;
-        let watch = Watch { project: &project, radius: self.radius, closure: self.closure };
+        let watch = Watch { project: &project, radius: self.radius, longest: self.longest_jump() };
         !self.is_convex && watch.jumps(a, b, MOST_HALVINGS)
     }
 
-    /// Whether the fingertip touches here alone; between two states it may stray to what it nearly touches.
-    pub fn touches_once(&self, contact: &Contact) -> bool {
-        self.is_convex || touches_once(self.task.surface, contact, self.radius, self.task.tolerances.closure)
+    /// What the fingertip touches beside the contact; between two states it may stray to it.
+    pub fn second(&self, contact: &Contact) -> Second {
+        if self.is_convex {
+            return Second::None;
+        }
+        match second_touch(self.task.surface, contact, self.radius) {
+            off if off <= 0.5 * self.task.tolerances.closure => Second::None,
+            off if off <= self.longest_jump() => Second::Near,
+            _ => Second::Far,
+        }
+    }
+
+    /// The longest jump (m) that a plan may hold, less what rounding may add.
+    fn longest_jump(&self) -> f64 {
+        self.closure.max(0.9 * LONGEST_JUMP * self.radius)
     }
 }
 
@@ -35,7 +58,7 @@ struct Watch<'a> {
     /// The ball's radius (m).
     radius: f64,
     /// The longest jump (m) that passes.
-    closure: f64,
+    longest: f64,
 }
 
 impl Watch<'_> {
@@ -48,10 +71,10 @@ impl Watch<'_> {
     fn jumps(&self, a: &Contact, b: &Contact, halvings: usize) -> bool {
         let moved = (b.p_OC - a.p_OC).norm();
         let (from, to) = (a.tip_center(self.radius), b.tip_center(self.radius));
-        if moved <= self.closure {
+        if moved <= self.longest {
             return false;
         }
-        if moved - (to - from).norm() > self.closure {
+        if moved - (to - from).norm() > self.longest {
             return true;
         }
         if a.facet == b.facet || halvings == 0 {
@@ -79,7 +102,7 @@ mod tests {
         };
         let at = |angle: f64, y: f64| Vec3::new(RADIUS * angle.sin(), y, RADIUS * angle.cos());
         let (from, to) = (project(&at(-0.05, -HALF), 0), project(&at(0.05, HALF), 0));
-        let watch = Watch { project: &project, radius: RADIUS, closure: CLOSURE };
+        let watch = Watch { project: &project, radius: RADIUS, longest: CLOSURE };
         assert!((to.p_OC - from.p_OC).norm() < (to.tip_center(RADIUS) - from.tip_center(RADIUS)).norm());
         watch.jumps(&from, &to, MOST_HALVINGS)
     }

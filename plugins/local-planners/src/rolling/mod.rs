@@ -57,7 +57,9 @@ impl Settings for RollingSettings {}
 /// Stops at the last valid state: at a joint's limit, out of reach or at a singularity (`reach`), at a
 /// collision, where the grasp is no longer stable, where net slip at a state uses up its share (within a step
 /// the tip may stray along the surface by as much as closure allows across it), and where a contact is lost,
-/// jumps on a concave edge, or nearly touches at a second place (`closure`).
+/// or touches at a second place as well (`closure`). In a mild dent it goes on upon the other side, which the
+/// fingertip touches at that instant, too: the contact jumps, by [`regrasp_api::LONGEST_JUMP`] at most, and
+/// the fingertip does not.
 #[derive(Clone, Debug)]
 pub struct Rolling {
     settings: RollingSettings,

@@ -1,6 +1,7 @@
 //! One step of rolling: the midpoint rule, removal of drift, net slip.
 
 use super::constraint::ContactJacobian;
+use super::jump::Second;
 pub(crate) use super::roller::{Roller, to_hand, to_object};
 use super::span::Span;
 use regrasp_api::{
@@ -126,8 +127,13 @@ impl Roller<'_> {
         }
         let p_HF = to_hand(&state.q.X_HO, &contact.tip_center(self.radius)) + velocity(&tip, &rate) * h;
         let end = surface.project(&to_object(X_HEnd, &p_HF), Some(touch.facet)).contact;
-        if self.jumps(&contact, &touch) || self.jumps(&touch, &end) || !self.touches_once(&end) {
+        if self.jumps(&contact, &touch) || self.jumps(&touch, &end) {
             return Err(Failure::Stop(Reason::Closure));
+        }
+        match self.second(&end) {
+            Second::None => (),
+            Second::Near => return Err(Failure::Finer),
+            Second::Far => return Err(Failure::Stop(Reason::Closure)),
         }
         let p_HF = to_hand(X_HEnd, &end.tip_center(self.radius));
         let joints = hand.inverse(finger, &p_HF, &near).ok_or(Failure::Stop(Reason::Reach))?;

@@ -173,6 +173,11 @@ pub fn ring() -> ObjectModel {
     object("{ kind = \"torus\", ring_radius = 0.03, tube_radius = 0.012, facets = 512 }")
 }
 
+/// The same of few facets: bent by some 45° from one to the next.
+pub fn sharp_ring() -> ObjectModel {
+    object("{ kind = \"torus\", ring_radius = 0.03, tube_radius = 0.012, facets = 64 }")
+}
+
 /// A random configuration with all fingers in contact and a stable grasp, collision-free.
 pub fn grasp(bench: &Bench, random: &mut Random) -> Configuration {
     let task = bench.task();
