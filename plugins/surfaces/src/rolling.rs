@@ -51,7 +51,7 @@ impl Rolling {
             areas: areas.collect(),
             above: if can_sink { Above::new(&polyhedron, &closest, radius) } else { Above::default() },
             closest,
-            sharp: SharpEdges::new(&polyhedron, sharp_angle_deg.to_radians()),
+            sharp: SharpEdges::new(&polyhedron, sharp_angle_deg.to_radians(), radius),
             polyhedron,
             radius,
             step: step.min((radius / 5.0).max(1e-4)),

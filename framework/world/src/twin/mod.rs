@@ -29,7 +29,7 @@ const FARTHEST: f64 = 3e-4;
 /// A surface is smooth enough if at most this share of the places where a fingertip can be lies close to a
 /// concave edge ...
 const ROUGH: f64 = 0.5;
-/// ... and a twin helps if it lowers that share to this part of the mesh's.
+/// ... and a twin helps if it lowers that share to this part of the mesh's, or has half as many facets.
 const HELPS: f64 = 0.8;
 /// Fingertips smaller than this (m) feel every facet.
 const SMALLEST_TIP: f64 = 1e-4;
@@ -51,7 +51,10 @@ pub fn automatic_twin(mesh: &Mesh, radius: f64) -> Option<Twin> {
     let tolerances = [(NEAR * radius).min(FARTHEST), (3.0 * NEAR * radius).min(FARTHEST)];
     let convex = tolerances.iter().find_map(|&tolerance| hull::within(mesh, &touch, tolerance));
     convex.or_else(|| {
-        dented(mesh, &touch, tolerances[1]).filter(|twin| roughness(&twin.mesh, radius) <= HELPS * rough)
+        dented(mesh, &touch, tolerances[1]).filter(|twin| {
+            2 * twin.mesh.facets().len() <= mesh.facets().len()
+                || roughness(&twin.mesh, radius) <= HELPS * rough
+        })
     })
 }
 
