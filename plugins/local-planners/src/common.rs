@@ -1,8 +1,8 @@
 //! What the three local planners share: refusals, the order of bisection, bounds of a finger's motion.
 
 use regrasp_api::{
-    CallError, Configuration, Contact, Context, FingerIndex, FingerJoints, Hand, JointKind, Random, Reached,
-    Reason, Resolution, Slot, SurfaceParam,
+    CallError, Configuration, Contact, Context, FingerIndex, FingerJoints, Hand, JointKind, LONGEST_JUMP,
+    Random, Reached, Reason, Resolution, Slot, SurfaceParam,
 };
 
 /// The answer of a planner that goes nowhere: the refusal is counted, the end is where it began.
@@ -25,18 +25,44 @@ pub(crate) fn wrong_target(plugin: &str, slot: Slot) -> CallError {
 /// choice.
 const PROBE_LIFT: f64 = 1e-3;
 
-/// Whether a fingertip's ball of `radius` (m) touches here alone. In a hollow it may touch at two places, or
-/// nearly; then which of the two is the contact is a matter of rounding, and the contact may jump from one to
-/// the other. Two places closer together than half of `closure` (m) are one.
-pub(crate) fn touches_once(surface: &dyn SurfaceParam, contact: &Contact, radius: f64, closure: f64) -> bool {
-    second_touch(surface, contact, radius) <= 0.5 * closure
+/// Nearer (m) than this a second place is a matter of rounding: which of the two is the contact is no longer
+/// certain where a plan is read again.
+const ROUNDING: f64 = 1e-7;
+
+/// Where a fingertip's ball touches beside its contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Second {
+    /// Nowhere that matters: nearly in a mild dent at most, over which the contact may jump.
+    None,
+    /// In a mild dent, so nearly that rounding decides which of the two is the contact; a little before or
+    /// behind it is certain.
+    Even,
+    /// Nearly, too far away for the contact to jump there.
+    Far,
 }
 
-/// How far (m) from the contact the second place is that a fingertip's ball of `radius` (m) touches, or
-/// nearly; next to nothing where it touches once.
-pub(crate) fn second_touch(surface: &dyn SurfaceParam, contact: &Contact, radius: f64) -> f64 {
+/// The longest jump (m) of a contact that planners make: what a plan may hold, less what rounding may add.
+pub(crate) fn longest_jump(radius: f64, closure: f64) -> f64 {
+    closure.max(0.9 * LONGEST_JUMP * radius)
+}
+
+/// What a fingertip's ball of `radius` (m) touches, or nearly, beside its contact. In a hollow it may touch at
+/// two places. Two places closer together than half of `closure` (m) are one.
+pub(crate) fn second_touch(
+    surface: &dyn SurfaceParam,
+    contact: &Contact,
+    radius: f64,
+    closure: f64,
+) -> Second {
     let off = surface.project(&contact.tip_center(radius + PROBE_LIFT), Some(contact.facet)).contact;
-    (off.p_OC - contact.p_OC).norm()
+    let apart = (off.p_OC - contact.p_OC).norm();
+    let gap = (contact.tip_center(radius) - off.p_OC).norm() - radius;
+    match apart {
+        apart if apart <= 0.5 * closure => Second::None,
+        apart if apart > longest_jump(radius, closure) => Second::Far,
+        _ if gap > ROUNDING => Second::None,
+        _ => Second::Even,
+    }
 }
 
 /// One index of a bisection, between two that came before it.

@@ -4,7 +4,7 @@ mod flight;
 mod follow;
 mod lift;
 
-use crate::common::{Levers, refuse, touches_once, wrong_target};
+use crate::common::{Levers, Second, refuse, second_touch, wrong_target};
 pub(crate) use flight::Flight;
 use regrasp_api::{
     CallError, Configuration, Contact, Context, FingerIndex, FingerJoints, Hint, Path, Reached, Reason, Slot,
@@ -221,7 +221,8 @@ fn unfit(flight: &Flight<'_>, target: End<'_>) -> Option<Reason> {
         rule = TipRule::Touches;
         let gap = task.hand.tip_center(*finger, target.joints) - flight.center(contact, 0.0);
         let (radius, closure) = (task.hand.fingertip_radius(), task.tolerances.closure);
-        if gap.norm() > 0.5 * closure || !touches_once(task.surface, contact, radius, closure) {
+        if gap.norm() > 0.5 * closure || second_touch(task.surface, contact, radius, closure) != Second::None
+        {
             return Some(Reason::Closure);
         }
     }

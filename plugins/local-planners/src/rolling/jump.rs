@@ -1,8 +1,8 @@
 //! Whether a contact jumps, as it does where the fingertip leaves one facet of a concave edge for the other.
 
 use super::step::Roller;
-use crate::common::second_touch;
-use regrasp_api::{Contact, LONGEST_JUMP, Mesh, Vec3};
+use crate::common::{Second, longest_jump, second_touch};
+use regrasp_api::{Contact, Mesh, Vec3};
 
 /// Halvings of a step after which a jump would be shorter than what the closure bound lets pass.
 const MOST_HALVINGS: usize = 8;
@@ -13,41 +13,22 @@ pub(super) fn is_convex(mesh: &Mesh) -> bool {
     2 * mesh.vertices().len() == mesh.facets().len() + 4 && mesh.is_locally_convex()
 }
 
-/// Where a fingertip's ball touches beside its contact.
-pub(super) enum Second {
-    /// Nowhere.
-    None,
-    /// Nearly, so close by that the contact may jump there: which of the two is the contact is a matter of
-    /// rounding here, and clear a little before or behind.
-    Near,
-    /// Nearly, too far away.
-    Far,
-}
-
 impl Roller<'_> {
     /// Whether the contact point jumps farther than a plan allows between two contacts of one rolling
     /// fingertip.
     pub fn jumps(&self, a: &Contact, b: &Contact) -> bool {
         let project = |p_OF: &Vec3, near: u32| self.task.surface.project(p_OF, Some(near)).contact;
-        let watch = Watch { project: &project, radius: self.radius, longest: self.longest_jump() };
+        let longest = longest_jump(self.radius, self.closure);
+        let watch = Watch { project: &project, radius: self.radius, longest };
         !self.is_convex && watch.jumps(a, b, MOST_HALVINGS)
     }
 
     /// What the fingertip touches beside the contact; between two states it may stray to it.
     pub fn second(&self, contact: &Contact) -> Second {
-        if self.is_convex {
-            return Second::None;
+        match self.is_convex {
+            true => Second::None,
+            false => second_touch(self.task.surface, contact, self.radius, self.task.tolerances.closure),
         }
-        match second_touch(self.task.surface, contact, self.radius) {
-            off if off <= 0.5 * self.task.tolerances.closure => Second::None,
-            off if off <= self.longest_jump() => Second::Near,
-            _ => Second::Far,
-        }
-    }
-
-    /// The longest jump (m) that a plan may hold, less what rounding may add.
-    fn longest_jump(&self) -> f64 {
-        self.closure.max(0.9 * LONGEST_JUMP * self.radius)
     }
 }
 

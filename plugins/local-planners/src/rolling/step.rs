@@ -1,9 +1,9 @@
 //! One step of rolling: the midpoint rule, removal of drift, net slip.
 
 use super::constraint::ContactJacobian;
-use super::jump::Second;
 pub(crate) use super::roller::{Roller, to_hand, to_object};
 use super::span::Span;
+use crate::common::Second;
 use regrasp_api::{
     Configuration, Contact, FingerIndex, FingerJoints, PerFinger, Pose, Reason, Rotation, TipKinematics, Vec3,
 };
@@ -132,7 +132,7 @@ impl Roller<'_> {
         }
         match self.second(&end) {
             Second::None => (),
-            Second::Near => return Err(Failure::Finer),
+            Second::Even => return Err(Failure::Finer),
             Second::Far => return Err(Failure::Stop(Reason::Closure)),
         }
         let p_HF = to_hand(X_HEnd, &end.tip_center(self.radius));
