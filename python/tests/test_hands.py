@@ -44,7 +44,7 @@ def test_a_mujoco_model_is_a_hand(tmp_path, ending: str) -> None:
     path = tmp_path / f"three.{ending}"
     path.write_text(mjcf())
     tips = [f"f{i}-tip" for i in range(3)]
-    hand = rg.Hand.from_file(path, tips=tips, palm="palm")
+    hand = rg.Hand.from_file(path, tips=tips, palm="palm", effort=0.8)
     assert "mjcf" in hand.tree and len(hand.fingers) == 3 and hand.fingertip_radius == 0.01
     names = [finger.joints for finger in hand.fingers]
     assert names[0] == ["f0-swing", "f0-knee", "f0-end"]
@@ -66,9 +66,10 @@ def test_a_robot_file_that_is_none_names_its_key(tmp_path) -> None:
         rg.Hand.from_file(tmp_path / "none.xml")
 
 
-@pytest.mark.parametrize(
-    "name", ["four-finger", "five-finger", "allegro-like", "trifinger-like", "free-fingertips"]
-)
+HANDS = ["four-finger", "five-finger", "allegro-like", "trifinger-like"]
+
+
+@pytest.mark.parametrize("name", HANDS)
 def test_a_hand_written_as_urdf_is_the_same_hand(tmp_path, name: str) -> None:
     hand = rg.Hand.built_in(name)
     text = hand.to_urdf(tmp_path / "new")
@@ -83,3 +84,20 @@ def test_a_hand_written_as_urdf_is_the_same_hand(tmp_path, name: str) -> None:
         q = generator.uniform(finger.lower, finger.upper, size=(20, len(finger.joints)))
         assert np.abs(hand.fk(i, q) - back.fk(i, q)).max() < 1e-12
         assert np.allclose(finger.lower, other.lower) and np.allclose(finger.effort, other.effort)
+
+
+@pytest.mark.parametrize("name", [*HANDS, "free-fingertips"])
+def test_pinocchio_puts_the_fingertips_where_we_do(name: str) -> None:
+    pinocchio = pytest.importorskip("pinocchio")
+    hand = rg.Hand.built_in(name)
+    model = pinocchio.buildModelFromXML(hand.to_urdf())
+    data = model.createData()
+    columns = [model.idx_qs[model.getJointId(joint)] for joint in hand.joint_names]
+    lower = np.concatenate([finger.lower for finger in hand.fingers])
+    upper = np.concatenate([finger.upper for finger in hand.fingers])
+    for joints in np.random.default_rng(3).uniform(lower, upper, size=(20, len(lower))):
+        q = np.empty(model.nq)
+        q[columns] = joints
+        pinocchio.framesForwardKinematics(model, data, q)
+        tips = [data.oMf[model.getFrameId(f"{finger.name}-tip")].translation for finger in hand.fingers]
+        assert np.abs(hand.fingertips(joints) - tips).max() < 1e-12

@@ -125,6 +125,8 @@ def test_grasps_in_bulk_are_arrays() -> None:
         (lambda: rg.Hand.built_in("four-finger").fk(0, [0, 0]), "shape (1, 2), not (any, 3)"),
         (lambda: rg.Bench("sphere").closest_points([[0.0, 0.0]]), "shape (1, 2), not (any, 3)"),
         (lambda: rg.force_closure([["a", 1, 2]], [[1, 2, 3]]), "no number"),
+        (lambda: rg.force_closure(np.ones((4, 3)), np.ones((4, 3)), "rough"), "`friction` holds something"),
+        (lambda: rg.force_closure(np.ones((4, 3)), np.ones((4, 3)), np.nan), "`friction`"),
     ],
 )
 def test_bad_input_is_refused_with_its_name(call, words: str) -> None:

@@ -14,7 +14,7 @@ from ._errors import ArgumentError
 from ._planning import native_changes, whole
 from ._regrasp import Configuration
 from ._scenario import Scenario
-from ._spatial import Array, array
+from ._spatial import Array, array, numbers_of
 
 
 def _grasps(
@@ -29,7 +29,7 @@ def _grasps(
         raise ArgumentError("`normals` hold one of the length 0", key="normals")
     cones = np.empty((*p.shape[:2], 2))
     for column, (key, value) in enumerate((("friction", friction), ("torsion", torsion))):
-        numbers = np.asarray(value, dtype=np.float64)
+        numbers = numbers_of(key, value)
         if not np.isfinite(numbers).all() or (numbers < 0).any():
             raise ArgumentError(f"`{key}` holds numbers outside 0..", key=key, range="0..")
         try:

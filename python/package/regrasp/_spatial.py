@@ -14,14 +14,22 @@ Array = npt.NDArray[np.float64]
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
-def array(key: str, value: npt.ArrayLike, shape: tuple[int | None, ...]) -> Array:
-    """``value`` as finite float64 numbers of this shape; None stands for any length. Strided arrays are
-    copied.
+def numbers_of(key: str, value: npt.ArrayLike) -> Array:
+    """``value`` as float64 numbers in C order; strided arrays are copied. Complex numbers are refused: what
+    numpy would make of them is another array.
     """
     try:
-        numbers = np.asarray(value, dtype=np.float64, order="C")
+        given = np.asarray(value)
+        if given.dtype.kind == "c":
+            raise TypeError("complex numbers")
+        return np.asarray(given, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
         raise ArgumentError(f"`{key}` holds something that is no number: {error}", key=key) from error
+
+
+def array(key: str, value: npt.ArrayLike, shape: tuple[int | None, ...]) -> Array:
+    """``value`` as finite float64 numbers of this shape; None stands for any length."""
+    numbers = numbers_of(key, value)
     fits = numbers.ndim == len(shape) and all(
         want in (None, have) for want, have in zip(shape, numbers.shape, strict=True)
     )
