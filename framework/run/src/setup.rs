@@ -244,12 +244,12 @@ impl<'a> Setup<'a> {
                 break;
             }
             warnings.push(again.warning(verdict));
-            let verification_s = run.verification_s;
             let next = self.plan_one(problem, solve, options, *again)?;
+            let verification_s = run.verification_s + next.verification_s;
             if next.verdict.is_some() {
                 run = next;
             }
-            run.verification_s += verification_s;
+            run.verification_s = verification_s;
         }
         run.outcome.warnings.extend(warnings);
         Ok(run)

@@ -46,8 +46,8 @@ pub(crate) fn longest_jump(radius: f64, closure: f64) -> f64 {
     closure.max(0.9 * LONGEST_JUMP * radius)
 }
 
-/// What a fingertip's ball of `radius` (m) touches, or nearly, beside its contact. In a hollow it may touch at
-/// two places. Two places closer together than half of `closure` (m) are one.
+/// What a fingertip's ball of `radius` (m) touches, or nearly, beside its contact. In a hollow it may touch
+/// at two places. Two places closer together than half of `closure` (m) are one.
 pub(crate) fn second_touch(
     surface: &dyn SurfaceParam,
     contact: &Contact,
@@ -56,7 +56,8 @@ pub(crate) fn second_touch(
 ) -> Second {
     let off = surface.project(&contact.tip_center(radius + PROBE_LIFT), Some(contact.facet)).contact;
     let apart = (off.p_OC - contact.p_OC).norm();
-    let gap = (contact.tip_center(radius) - off.p_OC).norm() - radius;
+    // From the plane there: the place itself lies farther on where the fingertip is not lifted.
+    let gap = off.n_O.dot(&(contact.tip_center(radius) - off.p_OC)) - radius;
     match apart {
         apart if apart <= 0.5 * closure => Second::None,
         apart if apart > longest_jump(radius, closure) => Second::Far,

@@ -62,8 +62,8 @@ fn random_transfers_keep_half_of_every_tolerance() {
     }
 }
 
-/// A ring's inner side is concave one way and convex the other: the ball touches two facets at once there, and
-/// its contact goes over to the other.
+/// A ring's inner side is concave one way and convex the other: the ball touches two facets at once there,
+/// and its contact goes over to the other.
 #[test]
 fn contacts_on_a_ring_go_over_from_facet_to_facet() {
     let bench = support::Bench::new(support::four_finger(), support::ring());

@@ -13,8 +13,8 @@ pub(crate) struct SharpEdges {
     nearest: Vec<u32>,
 }
 
-/// What lies at most this far (fingertip radii) from an edge tells whether the surface bends there, beside its
-/// two facets: a scanner's noise bends nearly every edge.
+/// What lies at most this far (fingertip radii) from an edge tells whether the surface bends there, beside
+/// its two facets: a scanner's noise bends nearly every edge.
 const SCALE: f64 = 0.3;
 
 impl SharpEdges {

@@ -2,8 +2,9 @@
 
 use super::editable::{Editable, unit_normal};
 use super::near::Near;
+use super::places::on_facet;
 use super::quadric::Quadric;
-use super::touch::{Touch, on_facet};
+use super::touch::Touch;
 use regrasp_api::{Mesh, Vec3};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -6,7 +6,8 @@
 
 use super::editable::{Editable, unit_normal};
 use super::near::Near;
-use super::touch::{Touch, on_facet};
+use super::places::on_facet;
+use super::touch::Touch;
 use crate::clearance::Field;
 use regrasp_api::{Mesh, Vec3};
 use std::cmp::Reverse;

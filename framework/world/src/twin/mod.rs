@@ -12,6 +12,7 @@ mod editable;
 mod fill;
 mod hull;
 mod near;
+mod places;
 mod quadric;
 mod roughness;
 mod touch;
@@ -72,7 +73,7 @@ pub fn twin_within(mesh: &Mesh, radius: f64, tolerance: f64) -> Option<Twin> {
 fn dented(mesh: &Mesh, touch: &Touch, tolerance: f64) -> Option<Twin> {
     // The changes are judged one by one; where their sum goes too far, a smaller share of the tolerance is
     // used up.
-    [0.8, 0.4].into_iter().find_map(|share| {
+    [0.8, 0.7, 0.55, 0.4].into_iter().find_map(|share| {
         let mut surface = editable::Editable::new(mesh);
         collapse::collapse(&mut surface, mesh, touch, 0.4 * share * tolerance);
         fill::fill(&mut surface, mesh, touch, share * tolerance);

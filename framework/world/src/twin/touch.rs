@@ -1,5 +1,6 @@
 //! What a fingertip's ball that touches a twin feels of the true mesh.
 
+use super::places::{on_facet, places};
 use crate::clearance::{Field, MeshSolid};
 use regrasp_api::{Mesh, Vec3};
 use std::sync::Arc;
@@ -10,8 +11,14 @@ const SPACING: f64 = 0.08;
 const MOST_PLACES: f64 = 60_000.0;
 /// How deep (m) the ball may sink into the twin itself at a place that counts as one where it can be.
 const SINK: f64 = 1e-6;
-/// What may lie between the places (m), added to the bound that was found.
+/// What may lie between the places (m), added to the bound that was found ...
 const BETWEEN: f64 = 5e-6;
+/// ... and in dents, as far as the tolerance leaves room for it.
+const BETWEEN_IN_DENTS: f64 = 4e-5;
+/// Facets on which a gap or depth this near (m) to the largest was found are looked at more closely ...
+const CLOSE: f64 = 4e-5;
+/// ... at places so many times nearer to each other: in a dent the ball lies deepest just beside the edge.
+const CLOSER: f64 = 4.0;
 
 /// The true mesh, and a ball.
 pub(super) struct Touch {
@@ -45,8 +52,9 @@ impl Touch {
     /// (m); `None` where it is more than `most`.
     pub fn bound(&self, twin: &Mesh, most: f64) -> Option<f64> {
         let (above, below) = self.range(twin, most)?;
-        let bound = above.max(below) + BETWEEN;
-        (bound <= most).then_some(bound)
+        let found = above.max(below);
+        let between = if twin.is_locally_convex() { BETWEEN } else { BETWEEN_IN_DENTS };
+        (found + BETWEEN <= most).then_some((found + between).min(most))
     }
 
     /// How far (m) the ball is from the mesh at most, and how deep it enters it, over all places where it
@@ -55,78 +63,59 @@ impl Touch {
         let own = (!twin.is_locally_convex()).then(|| MeshSolid::new(twin));
         let area: f64 = (0..twin.facets().len() as u32).map(|facet| twin.area(facet)).sum();
         let spacing = (SPACING * self.radius).max((area / MOST_PLACES).sqrt());
-        let (mut above, mut below) = (0.0, 0.0);
-        let mut visit = |p: &Vec3, n: &Vec3| {
-            if f64::max(above, below) > most {
-                return;
-            }
-            let gap = self.gap(p, n);
-            let counts = gap > above || -gap > below;
-            if counts && own.as_ref().is_none_or(|own| self.is_free(own, p, n)) {
-                above = f64::max(above, gap);
-                below = f64::max(below, -gap);
-            }
-        };
-        places(twin, spacing, &mut visit);
-        (f64::max(above, below) <= most).then_some((above, below))
-    }
-
-    fn is_free(&self, own: &MeshSolid, p: &Vec3, n: &Vec3) -> bool {
-        own.signed_distance_within(&(p + n * self.radius), 1.01 * self.radius) >= self.radius - SINK
+        let deepest = vec![0.0; twin.facets().len()];
+        let mut range = Range { touch: self, own, most, above: 0.0, below: 0.0, deepest };
+        places(twin, self.radius, spacing, &mut |facet, p, n| range.visit(facet, p, n));
+        for facet in range.close() {
+            let n = twin.normal(facet);
+            on_facet(twin.corners(facet), spacing / CLOSER, |p| range.visit(facet, p, &n));
+        }
+        range.is_within().then_some((range.above, range.below))
     }
 }
 
-/// Calls `visit` with points and normals all over a surface, no farther apart than `spacing` (m): on facets,
-/// and turning about convex edges and vertices.
-pub(super) fn places(mesh: &Mesh, spacing: f64, visit: &mut dyn FnMut(&Vec3, &Vec3)) {
-    // The mean normals at vertices; none where a concave edge ends: there the ball touches elsewhere.
-    let mut around = vec![Some(Vec3::zeros()); mesh.vertices().len()];
-    for facet in 0..mesh.facets().len() as u32 {
-        let corners = mesh.corners(facet);
-        let n = mesh.normal(facet);
-        on_facet(corners, spacing, |p| visit(p, &n));
-        for (k, neighbor) in mesh.neighbors(facet).iter().enumerate() {
-            let vertex = mesh.facets()[facet as usize][k] as usize;
-            let end = mesh.facets()[facet as usize][(k + 1) % 3] as usize;
-            if neighbor.bend < 0.0 {
-                (around[vertex], around[end]) = (None, None);
-            }
-            around[vertex] = around[vertex].map(|sum| sum + n * corner_angle(corners, k));
-            if neighbor.bend > 0.0 && neighbor.facet > facet {
-                let middle = (n + mesh.normal(neighbor.facet)).normalize();
-                let (from, to) = (corners[k], corners[(k + 1) % 3]);
-                let pieces = ((to - from).norm() / spacing).ceil().max(1.0) as usize;
-                for piece in 0..pieces {
-                    let p = from.lerp(&to, (piece as f64 + 0.5) / pieces as f64);
-                    visit(&p, &middle);
-                }
-            }
-        }
-    }
-    for (p, n) in mesh.vertices().iter().zip(&around) {
-        if let Some(n) = n.and_then(|sum| sum.try_normalize(1e-9)) {
-            visit(p, &n);
-        }
-    }
+/// What a ball feels at the places looked at so far.
+struct Range<'t> {
+    touch: &'t Touch,
+    /// The twin itself, where a ball on it may enter it elsewhere.
+    own: Option<MeshSolid>,
+    /// No more is looked at beyond this (m).
+    most: f64,
+    above: f64,
+    below: f64,
+    /// The largest gap or depth on each facet (m), whether the ball can be there or not.
+    deepest: Vec<f64>,
 }
 
-/// Points all over a triangle: the middles of the triangles into which it falls.
-pub(super) fn on_facet([a, b, c]: [Vec3; 3], spacing: f64, mut visit: impl FnMut(&Vec3)) {
-    let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-    let n = (longest / spacing).ceil().clamp(1.0, 1000.0) as usize;
-    let at = |i: f64, j: f64| a + (b - a) * (i / n as f64) + (c - a) * (j / n as f64);
-    for i in 0..n {
-        for j in 0..n - i {
-            let (x, y) = (i as f64, j as f64);
-            visit(&at(x + 1.0 / 3.0, y + 1.0 / 3.0));
-            if j + 1 < n - i {
-                visit(&at(x + 2.0 / 3.0, y + 2.0 / 3.0));
-            }
+impl Range<'_> {
+    fn is_within(&self) -> bool {
+        f64::max(self.above, self.below) <= self.most
+    }
+
+    fn visit(&mut self, facet: u32, p: &Vec3, n: &Vec3) {
+        if !self.is_within() {
+            return;
+        }
+        let gap = self.touch.gap(p, n);
+        let deep = &mut self.deepest[facet as usize];
+        *deep = deep.max(gap.abs());
+        if (gap > self.above || -gap > self.below) && self.is_free(p, n) {
+            self.above = self.above.max(gap);
+            self.below = self.below.max(-gap);
         }
     }
-}
 
-fn corner_angle(corners: [Vec3; 3], k: usize) -> f64 {
-    let (u, v) = (corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
-    u.cross(&v).norm().atan2(u.dot(&v))
+    /// Whether the ball enters the twin nowhere.
+    fn is_free(&self, p: &Vec3, n: &Vec3) -> bool {
+        let Some(own) = &self.own else { return true };
+        let radius = self.touch.radius;
+        own.signed_distance_within(&(p + n * radius), 1.01 * radius) >= radius - SINK
+    }
+
+    /// The facets of a twin with dents on which more may be found than was.
+    fn close(&self) -> Vec<u32> {
+        let least = self.above.max(self.below) - CLOSE;
+        let facets = 0..if self.own.is_some() { self.deepest.len() as u32 } else { 0 };
+        facets.filter(|&facet| self.deepest[facet as usize] > least).collect()
+    }
 }
