@@ -129,6 +129,14 @@ def facets_of(plan):
     return np.array(surface["vertices"], float), np.array(surface["facets"], int)
 
 
+def true_facets_of(plan):
+    """The facets of the object itself, which mass and clearance belong to."""
+    shape = plan["scenario"]["problem"]["object"]["shape"]
+    if shape["kind"] != "mesh":
+        return facets_of(plan)
+    return np.array(shape["vertices"], float), np.array(shape["facets"], int)
+
+
 def off_the_true_shape(shape, vertices):
     """How far vertices are from a primitive's closed form (m, to first order); None for a mesh."""
     x, y, z = vertices.T
@@ -159,7 +167,8 @@ class Bodies:
         problem = plan["scenario"]["problem"]
         vertices, facets = facets_of(plan)
         self.surface = mesh_of(vertices, facets)
-        self.bodies = [("object", self.surface, pin.SE3.Identity(), None)]
+        self.object = mesh_of(*true_facets_of(plan))
+        self.bodies = [("object", self.object, pin.SE3.Identity(), None)]
         for placed in problem["hand"].get("palm", []):
             self.add("palm", placed, None)
         for placed in problem.get("obstacle", []):
@@ -228,13 +237,14 @@ class Bodies:
         request = coal.DistanceRequest()
         return coal.distance(self.bodies[a][1], place[0], self.bodies[b][1], place[1], request, result)
 
-    def touch(self, finger, X_HO):
-        """Closest point of the object to a tip's centre, direction from there, and gap, in O."""
+    def touch(self, finger, X_HO, surface=None):
+        """Closest point of what contacts live on, or of another surface, to a tip's centre, direction from
+        there, and gap, in O."""
         c = X_HO.actInv(self.hand.tip(finger))
         result = coal.DistanceResult()
         request = coal.DistanceRequest()
         at = coal.Transform3s(np.eye(3), c)
-        coal.distance(self.surface, coal.Transform3s(), coal.Sphere(1e-9), at, request, result)
+        coal.distance(surface or self.surface, coal.Transform3s(), coal.Sphere(1e-9), at, request, result)
         p = np.array(result.getNearestPoint1())
         away = c - p
         far = np.linalg.norm(away)

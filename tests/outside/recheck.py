@@ -16,7 +16,16 @@ import numpy as np
 import pinocchio as pin
 
 from held import Held
-from judged import Bodies, Hand, between, facets_of, off_the_true_shape, pose_of, pose_of_state
+from judged import (
+    Bodies,
+    Hand,
+    between,
+    facets_of,
+    off_the_true_shape,
+    pose_of,
+    pose_of_state,
+    true_facets_of,
+)
 from played import Played
 
 SUB_STEPS = 7
@@ -95,6 +104,7 @@ class Recheck(Played, Held):
         edges = facets[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
         closed = {(a, b) for a, b in edges} == {(b, a) for a, b in edges}
         self.faults.note("shape", not closed, "the facets do not close", "the object's facets")
+        vertices, facets = true_facets_of(self.plan)
         a, b, c = vertices[facets].transpose(1, 0, 2)
         volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
         self.center = ((a + b + c) / 4 * volumes[:, None]).sum(axis=0) / volumes.sum()
@@ -169,6 +179,7 @@ class Recheck(Played, Held):
     def contacts(self):
         """Contacts are where the plan has them, on object and fingertip; normals are the surface's."""
         closure = self.tolerances["closure"]
+        bound = ((self.plan.get("object") or {}).get("contact_surface") or {}).get("bound")
         for s, k, q in self.states:
             X_HO = pose_of_state(q)
             self.hand.place(np.concatenate(q["joints"]))
@@ -182,6 +193,9 @@ class Recheck(Played, Held):
                 self.measure("contact points", np.linalg.norm(X_HO.act(stated) - on_tip), closure, (s, k, f))
                 off = np.linalg.norm(n - np.array(contact["normal_O"]))
                 self.measure("normals", off, self.tolerances["normal"], (s, k, f))
+                if bound is not None:
+                    gap = abs(self.bodies.touch(f, X_HO, self.bodies.object)[2])
+                    self.measure("contact surface", gap, bound + closure, (s, k, f))
 
     def walk(self):
         """Closure, slip and clearance along the motion that the states mean."""

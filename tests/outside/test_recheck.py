@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
+import trimesh
 
 import mutate
 import problems
@@ -65,6 +66,30 @@ def solve(seed, folder, limit=5):
     if done.returncode != 0:
         return done.returncode, {} if done.returncode == 3 else {"program": done.stderr[-2000:]}
     return 0, Recheck(json.loads((folder / "plan.json").read_text())).run()
+
+
+def test_plans_on_a_scan(regrasp, tmp_path):
+    """A ball as a scanner sees it: contacts live on a twin, as near to the mesh as the plan says."""
+    scan = trimesh.creation.icosphere(subdivisions=4, radius=0.0275)
+    scan.vertices *= 1 + np.random.default_rng(7).normal(size=(len(scan.vertices), 1)) * 2e-4 / 0.0275
+    scan.export(tmp_path / "scan.obj")
+    (tmp_path / "scan.toml").write_text(
+        """[hand]
+builtin = "four-finger"
+[object]
+shape = { kind = "mesh", file = "scan.obj" }
+friction = 0.8
+[start]
+pose = { position = [0.0, 0.0, 0.085] }
+[[goal]]
+pose = { position = [0.0, 0.0, 0.085], axis = [0.0, 0.0, 1.0], angle_deg = 180.0 }
+"""
+    )
+    regrasp("plan", "scan.toml", "-o", "plan.json", cwd=tmp_path)
+    plan = json.loads((tmp_path / "plan.json").read_text())
+    assert Recheck(plan).run() == {}
+    plan["object"]["contact_surface"]["bound"] /= 20
+    assert "contact surface" in Recheck(plan).run()
 
 
 @pytest.mark.parametrize("name", ["sphere", "allegro-ball", "cube-free"])
