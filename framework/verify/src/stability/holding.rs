@@ -88,7 +88,7 @@ impl HoldingCheck {
         if self.last.as_ref() == Some(&here) {
             return; // In a regrasp all that holds rests.
         }
-        let found = self.prove(&here.0, &weight_O);
+        let found = self.prove(&here.0, &weight_O, None);
         self.last = Some(here);
         self.failures += usize::from(found.is_err());
         let place = || leg.between(state, sample as f64 / SAMPLES as f64);
@@ -109,11 +109,12 @@ impl HoldingCheck {
         let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
         self.start();
         self.solved = 0.0;
-        if forces_O.len() == held.contacts.len() && self.cone.mu > 0.0 {
+        let is_known = forces_O.len() == held.contacts.len() && self.cone.mu > 0.0;
+        let known = is_known.then(|| {
             let given: Vec<Vec3> = forces_O.iter().map(|force| force / self.unit).collect();
-            self.carried = Some(vec![scaled(&held.contacts, &given); self.wanted(&weight_O).len()]);
-        }
-        self.prove(&held, &weight_O)
+            scaled(&held.contacts, &given)
+        });
+        self.prove(&held, &weight_O, known.as_ref())
     }
 
     fn held(
@@ -136,8 +137,9 @@ impl HoldingCheck {
         held
     }
 
-    /// The slack with which the grasp is proved to hold the load; `Err` gives what could not be proved.
-    fn prove(&mut self, held: &Held, weight_O: &Vec3) -> Result<f64, f64> {
+    /// The slack with which the grasp is proved to hold the load; `Err` gives what could not be proved. Forces
+    /// that are known to hold the weight may hold more.
+    fn prove(&mut self, held: &Held, weight_O: &Vec3, known: Option<&Forces>) -> Result<f64, f64> {
         let correction = Correction::new(&held.contacts).ok_or(f64::NEG_INFINITY)?;
         let wanted = self.wanted(weight_O);
         if let Some(carried) = self.carried.take()
@@ -146,7 +148,7 @@ impl HoldingCheck {
         {
             return Ok(slack);
         }
-        let forces = self.solve(held, &correction, &wanted)?;
+        let forces = self.solve(held, &correction, &wanted, known)?;
         self.solved = self.check(held, &correction, forces, &wanted)?;
         Ok(self.solved)
     }
@@ -158,9 +160,11 @@ impl HoldingCheck {
         held: &Held,
         correction: &Correction,
         wanted: &[Vector6<f64>],
+        known: Option<&Forces>,
     ) -> Result<Vec<Forces>, f64> {
         let most = self.load.max_normal_force.map(|most| most / self.unit);
-        let mut solved: Vec<(Forces, f64)> = Vec::new();
+        // Known ones are taken as they are: they were not chosen for their slack.
+        let mut solved: Vec<(Forces, f64)> = known.map(|forces| (*forces, 0.0)).into_iter().collect();
         let mut all = Vec::with_capacity(wanted.len());
         for wanted in wanted {
             let enough = solved.iter().map(|(_, slack)| DWINDLED * slack).fold(f64::INFINITY, f64::min);
