@@ -79,10 +79,14 @@ class Held:
         return min(slacks) / most
 
     def forces(self, s, k, q, mu):
-        """Forces of a state lie in their cones, bear the weight, and are within the efforts."""
+        """Forces of a state lie in their cones, bear the weight, and are within the efforts. A plan that says
+        that its object needs more friction than is given has forces in the cones of that friction."""
         forces = q.get("forces")
         if not forces:
             return
+        needed = ((self.plan.get("certificate") or {}).get("holds") or {}).get("friction") or {}
+        if "hold" not in self.problem:
+            mu = max(mu, needed.get("value") or 0.0)
         X_HO = pose_of_state(q)
         joints = np.concatenate(q["joints"])
         self.hand.place(joints)
