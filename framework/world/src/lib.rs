@@ -17,6 +17,6 @@ pub use hand::{
     ChainHand, FingerWorkspace, HandError, LinkFrame, LinkFrames, ObjectPlace, finger_workspace, object_place,
 };
 pub use hull::{coarse_hull, convex_hull, convex_pieces};
-pub use object::{Measures, load_object, measure, object_of_mesh, primitive_mesh};
+pub use object::{Measures, load_object, measure, object_of_mesh, primitive_mesh, signed_distances};
 pub use scene::{World, check_limits, check_problem, check_units};
 pub use twin::{automatic_twin, roughness, twin_within};
