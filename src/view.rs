@@ -61,8 +61,8 @@ pub fn run(args: &ViewArgs) -> Result<(), Failure> {
         read[0].1.replay = Some(replay);
     }
     let labels = labels(&args.plans);
-    let shown = |((plan, extras), label)| Shown { plan, extras, label };
-    let all: Vec<Shown<'_>> = read.iter().map(|(p, e)| (p, e)).zip(&labels).map(shown).collect();
+    let named = read.iter().zip(&labels);
+    let all: Vec<Shown<'_>> = named.map(|((plan, extras), label)| Shown { plan, extras, label }).collect();
     let page = regrasp::view::page_beside(all[0], &all[1..]).map_err(|reason| refused(&reason, first))?;
     put(&page, &output).map_err(Failure::bad_input)?;
     if outputs::is_standard(&output) {

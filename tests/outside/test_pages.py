@@ -87,7 +87,9 @@ def test_the_plots_are_the_plans_figures(folder, plan, visit):
     holds = plan["certificate"]["holds"]
     assert worst["friction"][1] == pytest.approx(holds["friction"]["value"], rel=0.01)
     assert worst["effort"][1] == pytest.approx(holds["effort"]["value"], abs=2e-3)
-    assert worst["clearance"][0] == pytest.approx(plan["certificate"]["clearance"]["value"], rel=0.05)
+    # The certificate bounds all times, the plot shows the states.
+    least = plan["certificate"]["clearance"]["value"]
+    assert least <= worst["clearance"][0] < least + 2e-4
     fastest = next(c for c in page.evaluate("regrasp.data.verdict") if c["name"] == "velocities")["worst"]
     assert 0.9 * fastest < worst["speed"][1] <= fastest * 1.001
     # One state by hand: the largest share of tangential in normal force.

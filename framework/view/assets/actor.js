@@ -88,6 +88,11 @@ export class Actor {
         this.stage.layer("forces", this.forces.group);
     }
 
+    /** What the arrows' length means, in words. */
+    arrowScale() {
+        return this.forces ? `1 cm of an arrow is ${Number((0.01 / this.forces.perNewton).toPrecision(2))} N` : "";
+    }
+
     traces(data, size) {
         const { states, segments } = this.motion;
         const transfers = segments.filter((segment) => segment.kind === "transfer");
@@ -170,7 +175,7 @@ export class Actor {
 export class Spotlight {
     constructor(stage) {
         this.stage = stage;
-        this.glow = new THREE.MeshBasicMaterial({ color: "#ff2d55", transparent: true, opacity: 0.5, depthTest: false, depthWrite: false });
+        this.glow = new THREE.MeshBasicMaterial({ color: "#ff2d55", transparent: true, opacity: 0.38, depthTest: false, depthWrite: false });
         this.marks = [];
     }
 

@@ -51,6 +51,7 @@ export class Chart {
         parent.append(this.figure);
         this.listen(seek);
         this.choose(0);
+        // The first drawing is made when there is room for it, which the page does not wait for.
         new ResizeObserver(() => this.draw()).observe(this.plot);
     }
 
@@ -76,7 +77,7 @@ export class Chart {
         this.plot.setAttribute("aria-label", this.summary(values));
         this.dots = this.series.map((s) => element("span", { class: "dot", style: `--own:${s.color}`, "aria-hidden": "true" }));
         this.area.replaceChildren(this.cursor, this.head, ...this.dots);
-        this.draw();
+        if (this.drawn) this.draw();
         if (this.time !== undefined) this.show(this.time);
     }
 
@@ -99,6 +100,7 @@ export class Chart {
     draw() {
         const [width, height] = [this.plot.clientWidth, this.plot.clientHeight];
         if (!width || !height) return;
+        this.drawn = true;
         const [w, h] = [width - PAD.left - PAD.right, height - PAD.top - PAD.bottom];
         const [X, Y] = [(t) => PAD.left + w * this.x(t), (v) => PAD.top + h * this.y(v)];
         this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
@@ -192,10 +194,18 @@ function extremes(values, limit) {
     return values.length ? values : [limit ?? 0];
 }
 
+/** A series as a line; points that nobody could tell from the one before are left out. */
 function path({ times, values }, X, Y) {
-    let [d, open] = ["", false];
+    let [d, open, left, above] = ["", false, 0, 0];
     values.forEach((value, k) => {
-        if (value !== null) d += `${open ? "L" : "M"}${X(times[k]).toFixed(1)} ${Y(value).toFixed(1)}`;
+        if (value !== null) {
+            const [x, y] = [X(times[k]), Y(value)];
+            const near = open && Math.abs(x - left) < 0.4 && Math.abs(y - above) < 0.4 && values[k + 1] !== null && k + 1 < values.length;
+            if (!near) {
+                d += `${open ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`;
+                [left, above] = [x, y];
+            }
+        }
         open = value !== null;
     });
     return d;

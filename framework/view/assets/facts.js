@@ -14,7 +14,7 @@ export function headline(data, motion) {
     return [`seed ${data.seed}`, counts(motion), verdict].filter(Boolean).join(" · ");
 }
 
-function rows(data, motion) {
+function rows(data, motion, arrows) {
     const reached = `${data.goals_reached.length} of ${data.goals.length}`;
     const gamma = data.cone?.gamma ? `, γ = ${number(data.cone.gamma * 1000)} mm` : "";
     const list = [
@@ -24,14 +24,14 @@ function rows(data, motion) {
         ["Object", `${data.object.name}, ${facets(data.object)}, ${data.object.mass} kg, friction ${data.object.friction}`],
         ["Contacts", data.cone ? `${data.contact_model}, μ = ${number(data.cone.mu)}${gamma}` : data.contact_model],
     ];
-    if (data.grip) list.push(["Forces", data.grip.origin]);
+    if (data.grip) list.push(["Forces", [data.grip.origin, arrows].filter(Boolean).join("; ")]);
     if (data.replay) list.push(["Simulation", data.replay.caption]);
     return list;
 }
 
-/** Writes them; `visit` is told of which check the place is to be shown. */
-export function facts(parent, data, motion, visit) {
-    parent.replaceChildren(factList(rows(data, motion)));
+/** Writes them; `arrows` says what their length means, `visit` is told of which check the place is to be shown. */
+export function facts(parent, { data, motion }, arrows, visit) {
+    parent.replaceChildren(factList(rows(data, motion, arrows)));
     if (data.verdict.length) {
         parent.append(element("h2", { text: "Verifier" }));
         new CheckTable(parent, data.verdict, visit);

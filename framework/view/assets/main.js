@@ -71,7 +71,7 @@ class App {
         id("headline").textContent = headline(data, motion);
         id("segment-list").replaceChildren();
         this.segments = new SegmentList(id("segment-list"), motion, this.player);
-        facts(id("facts"), data, motion, (check) => this.visit(check));
+        facts(id("facts"), this.shown[index], this.actors[index]?.arrowScale(), (check) => this.visit(check));
         id("graph").replaceChildren();
         this.graph = data.graph ? new GraphTab(id("graph"), data, this) : null;
         this.plots.open(this.shown[index], this.shown.filter((_, i) => i !== index));
@@ -120,8 +120,6 @@ class App {
         SPEEDS.forEach((s) => speed.append(element("option", { value: s, text: `${s}×` })));
         speed.addEventListener("change", () => player.setSpeed(Number(speed.value)));
         if (!this.shown.some(({ motion }) => motion.states.count)) document.body.classList.add("still");
-        const marks = this.actors[0]?.forces ? ` 1 cm of an arrow is ${(0.01 / this.actors[0].forces.perNewton).toPrecision(2)} N.` : "";
-        id("force-scale").textContent = marks;
         keyboard([...playKeys(this), ...layerKeys(layers, this.layers), this.section.key(), ...cameraKeys(this.stage)]);
     }
 

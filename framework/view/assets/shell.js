@@ -130,7 +130,8 @@ export function keyboard(list) {
         if (target.closest("select, textarea, input:not([type=range]):not([type=checkbox])")) return;
         // Space, Enter and the arrows keep their meaning on buttons, boxes, tabs and sliders; the play head's slider leaves them to us.
         if (event.key === " " && target.closest("button, summary, input[type=checkbox], [role=button]")) return;
-        if (/^(Arrow|Home|End|Page)/.test(event.key) && target.closest("[role=tablist], input[type=range]:not(#scrub)")) return;
+        if (event.key.startsWith("Arrow") && target.closest("[role=tablist]")) return;
+        if (/^(Arrow|Home|End|Page)/.test(event.key) && target.closest("input[type=range]:not(#scrub)")) return;
         const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
         const name = event.shiftKey && event.key.length > 1 ? `Shift+${key}` : key;
         const found = list.find(([keys]) => keys.includes(name));

@@ -87,8 +87,8 @@ pub(crate) fn all<'a>(first: Shown<'a>, others: &[Shown<'_>]) -> Result<AllData<
     let known = if others.is_empty() { Value::Null } else { data_of(&first)? };
     let mut beside = Vec::with_capacity(others.len());
     for other in others {
-        let beside = |error| ViewError::Beside { label: other.label.into(), error: Box::new(error) };
-        let mut value = data_of(other).map_err(beside)?;
+        let named = |error| ViewError::Beside { label: other.label.into(), error: Box::new(error) };
+        let mut value = data_of(other).map_err(named)?;
         value["label"] = other.label.into();
         // What is the first plan's too is not written again.
         for shared in ["hand", "object", "obstacles"] {
