@@ -31,7 +31,7 @@ export function valueAt({ times, values }, time) {
 
 /**
  * `sets` are the choices of curves, each `{ name, series: [{ name, color, times, values }] }`; `limit` is `{ value, label, above }`, `above`
- * where values must stay over it; `bands` are the shaded times, `span` is where time begins and ends; `note(time)` adds words to the reading.
+ * where values must stay over it; `bands` are the shaded times, `span` is where time begins and ends; `note(time)` gives words below the plot.
  */
 export class Chart {
     constructor(parent, { name, unit, digits, sets, limit, bands, span, note, remark, seek }) {
@@ -47,7 +47,8 @@ export class Chart {
         this.plot = element("div", { class: "plot", role: "img" }, this.svg, this.area, this.tip);
         this.capped = element("small", { class: "capped" });
         const title = element("figcaption", { class: "curve-title" }, element("span", { text: `${name} (${unit || "no unit"})` }), this.choice(), this.reading);
-        this.figure = element("figure", { class: "curve" }, title, this.plot, this.capped);
+        this.under = element("small", { class: "capped" });
+        this.figure = element("figure", { class: "curve" }, title, this.plot, this.under, this.capped);
         parent.append(this.figure);
         this.listen(seek);
         this.choose(0);
@@ -147,16 +148,16 @@ export class Chart {
             this.dots[i].style.left = `${100 * this.x(time)}%`;
             this.dots[i].style.top = `${100 * this.y(value)}%`;
         });
-        this.reading.textContent = this.words(time, values);
+        this.reading.textContent = this.words(values);
+        if (this.note) this.under.textContent = this.note(time);
     }
 
-    /** The value at a time, the worst of several, and what belongs to it. */
-    words(time, values) {
+    /** The value, or the worst of several and whose it is. */
+    words(values) {
         const known = values.map((value, i) => [value, this.series[i]]).filter(([value, s]) => value !== null && !s.faint);
         if (!known.length) return "none";
         const [value, s] = known.reduce((a, b) => ((this.limit?.above ? b[0] < a[0] : b[0] > a[0]) ? b : a));
-        const note = this.note ? this.note(time) : "";
-        return [`${this.digits(value)}${known.length > 1 ? ` ${s.name}` : ""}`, note].filter(Boolean).join(" · ");
+        return `${this.digits(value)}${known.length > 1 ? ` ${s.name}` : ""}`;
     }
 
     /** Seeks while pressed, and shows the values under the pointer. */

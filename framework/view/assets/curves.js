@@ -36,7 +36,7 @@ function clearance(shown, others) {
     const label = least > 0 ? `limit: above ${(least * 1000).toFixed(2)} mm` : "limit: above 0 mm";
     const note = (time) => {
         const { state } = shown.motion.locate(Math.min(time, shown.motion.end));
-        return pairs[pair[state]].replaceAll("`", "");
+        return `between ${pairs[pair[state]].replaceAll("`", "")}`;
     };
     return { key: "clearance", name: "Clearance", unit: "mm", digits: millimetres, sets: single(shown, others, "clearance"), limit: { value: least, label, above: true }, note };
 }

@@ -60,7 +60,8 @@ class App {
         stage.open(box);
         const lines = new THREE.LineBasicMaterial({ color: "#101418", transparent: true, opacity: 0.35 });
         this.wire = add(new THREE.LineSegments(new THREE.WireframeGeometry(geometry), lines), "facets");
-        add(axes(stage.radius * 1.15), "axes");
+        geometry.computeBoundingSphere();
+        add(axes(geometry.boundingSphere.radius * 1.25), "axes");
         const dot = new THREE.Mesh(new THREE.SphereGeometry(stage.radius * 0.035, 24, 16), new THREE.MeshBasicMaterial({ color: "#d6336c", depthTest: false, transparent: true }));
         dot.renderOrder = 10;
         place(dot, { p: center, q: [1, 0, 0, 0] });
@@ -118,7 +119,7 @@ class App {
         const ticks = [-1, -0.5, 0, 0.5, 1].map((share) => element("span", { text: share ? mm(share) : "0" }));
         const bar = element("div", { class: "bar", style: `background:linear-gradient(to right, ${SCALE.join(", ")})` });
         const ends = element("div", { class: "ticks" }, element("span", { text: "below the mesh" }), element("span", { text: "above it" }));
-        const bound = `A fingertip on it is within ${(1000 * this.data.twin.bound).toFixed(2)} mm of touching the mesh.`;
+        const bound = `A fingertip on it is within ${(Math.ceil(1e5 * this.data.twin.bound) / 100).toFixed(2)} mm of touching the mesh.`;
         return element("figure", { class: "scale" }, element("figcaption", { text: "Contact surface over the mesh (mm)" }), bar, element("div", { class: "ticks" }, ...ticks), ends, element("p", { text: bound }));
     }
 
