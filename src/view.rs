@@ -24,7 +24,8 @@ cones and rolled traces, every segment; closure margin, clearance, friction need
 time; and what the verifier says. Press ? in it for its keys.\n\
 Several plans share one page: overlaid, side by side or one alone, in step by time or by the share of the \
 motion that is done.\n\n\
-Examples:\n  regrasp view plan.json\n  regrasp view a.json b.json -o both.html\n  regrasp replay plan.json -o replay.json; regrasp view plan.json \
+Examples:\n  regrasp view plan.json\n  regrasp view a.json b.json -o both.html\n  \
+regrasp replay plan.json -o replay.json; regrasp view plan.json \
 --replay replay.json -o motion.html")]
 pub struct ViewArgs {
     /// Plan files; the first gives the page its name.

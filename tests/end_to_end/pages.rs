@@ -93,5 +93,6 @@ fn several_plans_are_shown_by_their_files_names() {
 }
 
 /// A box of 40 mm.
-const BOX: &str = "v 0 0 0\nv .04 0 0\nv .04 .04 0\nv 0 .04 0\nv 0 0 .04\nv .04 0 .04\nv .04 .04 .04\nv 0 .04 .04\n\
+const BOX: &str = "\
+v 0 0 0\nv .04 0 0\nv .04 .04 0\nv 0 .04 0\nv 0 0 .04\nv .04 0 .04\nv .04 .04 .04\nv 0 .04 .04\n\
 f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";

@@ -13,6 +13,7 @@ fn the_page_of_a_hand_has_joints_that_follow_and_tips_to_check() {
     let mut hand = plan().scenario.problem.hand;
     hand.finger[0].joint[2].mimic =
         Some(regrasp_api::Mimic { joint: "b".into(), multiplier: 0.5, offset: 0.1 });
+    hand.finger[0].rest[2] = 0.15;
     let view = HandView {
         hand: &hand,
         ball_radius: 0.02,
@@ -25,7 +26,7 @@ fn the_page_of_a_hand_has_joints_that_follow_and_tips_to_check() {
     let data = data(&page);
     let joint = &data["hand"]["fingers"][0]["joints"][2];
     assert_eq!(joint["mimic"], json!({"joint": 1, "multiplier": 0.5, "offset": 0.1}));
-    assert_eq!(data["hand"]["fingers"][0]["rest"], json!([0.0, 0.1, 0.2]));
+    assert_eq!(data["hand"]["fingers"][0]["rest"], json!([0.0, 0.1, 0.15]));
     assert_eq!(data["ball"], json!({"position": [0.0, 0.01, 0.09], "quality": 0.4}));
     assert_eq!(data["lists"], json!([["notes", ["<script>"]]]));
     // The last of the postures: all at their upper ends, but for the joint that is driven.

@@ -10,10 +10,15 @@ pub fn plan() -> Plan {
             "time": time,
             "object": {"position": [0.0, 0.0, 0.08], "orientation": [1.0, 0.0, 0.0, 0.0]},
             "joints": [[q, 0.1, 0.2]],
-            "contacts": [{"point_O": [0.03, 0.0, 0.0], "normal_O": [1.0, 0.0, 0.0], "point_F": [-0.01, 0.0, 0.0]}],
+            "contacts": [
+                {"point_O": [0.03, 0.0, 0.0], "normal_O": [1.0, 0.0, 0.0], "point_F": [-0.01, 0.0, 0.0]},
+            ],
         })
     };
-    let joint = |name: &str, axis: [f64; 3]| json!({"name": name, "origin": {"position": [0.0, 0.0, 0.05]}, "axis": axis, "lower": -1.0, "upper": 1.0});
+    let joint = |name: &str, axis: [f64; 3]| {
+        let origin = json!({"position": [0.0, 0.0, 0.05]});
+        json!({"name": name, "origin": origin, "axis": axis, "lower": -1.0, "upper": 1.0})
+    };
     let capsule =
         json!({"shape": {"kind": "capsule", "from": [0, 0, 0], "to": [0, 0, 0.05], "radius": 0.008}});
     let mut last = joint("c", [0.0, 1.0, 0.0]);
@@ -28,10 +33,17 @@ pub fn plan() -> Plan {
                     "name": "one",
                     "fingertip_radius": 0.01,
                     "palm": [{"shape": {"kind": "box", "size": [0.1, 0.1, 0.01]}}],
-                    "finger": [{"name": "</script>", "joint": [joint("a", [2.0, 0.0, 0.0]), joint("b", [0.0, 1.0, 0.0]), last], "tip": [0.0, 0.0, 0.05], "rest": [0.0, 0.1, 0.2]}],
+                    "finger": [{
+                        "name": "</script>",
+                        "joint": [joint("a", [2.0, 0.0, 0.0]), joint("b", [0.0, 1.0, 0.0]), last],
+                        "tip": [0.0, 0.0, 0.05],
+                        "rest": [0.0, 0.1, 0.2],
+                    }],
                 },
                 "object": {"shape": {"kind": "sphere", "radius": 0.03, "facets": 80}, "friction": 0.8},
-                "obstacle": [{"name": "floor", "shape": {"kind": "half-space", "normal": [0, 0, 1], "offset": -0.1}}],
+                "obstacle": [
+                    {"name": "floor", "shape": {"kind": "half-space", "normal": [0, 0, 1], "offset": -0.1}},
+                ],
                 "start": {"pose": {"position": [0.0, 0.0, 0.08]}},
                 "goal": [],
             },
