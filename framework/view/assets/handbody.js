@@ -27,9 +27,10 @@ export class HandBody {
     finger(finger, f, size) {
         const skin = new THREE.Color("#c3c8d0").lerp(new THREE.Color(fingerColor(f)), 0.16);
         const material = this.material({ color: skin }, { roughness: 0.5, metalness: 0.15 });
-        const links = finger.joints.map((joint) => {
+        const shapes = finger.joints.map((joint) => joint.shapes.map((shape) => shapeMesh(shape, material)));
+        const links = shapes.map((own) => {
             const link = new THREE.Group();
-            joint.shapes.forEach((shape) => link.add(shapeMesh(shape, material)));
+            own.forEach((shape) => link.add(shape));
             this.root.add(link);
             return link;
         });
@@ -38,7 +39,7 @@ export class HandBody {
         tip.position.set(...finger.tip);
         tip.castShadow = true;
         links.at(-1).add(tip);
-        return { links, tip, rubber };
+        return { links, shapes: shapes.flat(), tip, rubber };
     }
 
     /** Adds the frames of palm and fingertips: x red, y green, z blue. */

@@ -63,8 +63,7 @@ class App {
         stage.scene.add(...this.words);
         stage.layer("names", ...this.words);
         stage.layer("tips", ...this.body.fingers.map(({ tip }) => tip));
-        const shapes = this.body.fingers.flatMap(({ links, tip }) => links.flatMap((link) => link.children.filter((part) => part !== tip && part.type === "Group" && part.children[0]?.isMesh)));
-        stage.layer("links", this.body.palm, ...shapes.filter((part) => part.children.length === 1));
+        stage.layer("links", this.body.palm, ...this.body.fingers.flatMap(({ shapes }) => shapes));
     }
 
     ball(data, box) {
