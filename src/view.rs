@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 The page is one file that needs no network: hand, object and obstacles in 3-D, contacts, forces, friction \
 cones and rolled traces, every segment; closure margin, clearance, friction needed, efforts and speeds over \
-time; and what the verifier says. Press ? in it for its keys.\n\
+time; and what the verifier says. Press ? in it for its keys. \
 Several plans share one page: overlaid, side by side or one alone, in step by time or by the share of the \
 motion that is done.\n\n\
 Examples:\n  regrasp view plan.json\n  regrasp view a.json b.json -o both.html\n  \

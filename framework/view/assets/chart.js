@@ -65,26 +65,24 @@ export class Chart {
 
     choose(index) {
         this.series = this.sets[index].series;
-        const values = this.series.flatMap((s) => s.values).filter((x) => x !== null);
-        const limit = this.limit?.value;
-        [this.least, this.most] = [Math.min(...extremes(values, limit)), Math.max(...extremes(values, limit))];
+        const limit = this.limit?.value ?? 0;
+        [this.least, this.most] = extremes(this.series);
         const cap = limit > 0 && !this.limit.above ? MOST_OF_LIMIT * limit : Infinity;
-        const over = values.reduce((most, x) => Math.max(most, x), 0) > cap;
-        const top = over ? cap : Math.max(...values.filter(Number.isFinite), limit ?? 0, 1e-9);
-        const bottom = Math.min(...values, limit ?? 0, 0);
+        const over = this.most > cap;
+        const top = over ? cap : Math.max(this.most, limit, 1e-9);
+        const bottom = Math.min(this.least, limit, 0);
         const room = 0.08 * (top - bottom);
         [this.top, this.bottom] = [top + room, bottom < 0 ? bottom - room : 0];
         this.capped.textContent = [this.remark, over ? `drawn up to ${this.digits(cap)}; largest: ${this.digits(this.most)}` : ""].filter(Boolean).join(" · ");
-        this.plot.setAttribute("aria-label", this.summary(values));
+        this.plot.setAttribute("aria-label", this.summary());
         this.dots = this.series.map((s) => element("span", { class: "dot", style: `--own:${s.color}`, "aria-hidden": "true" }));
         this.area.replaceChildren(this.cursor, this.head, ...this.dots);
         if (this.drawn) this.draw();
         if (this.time !== undefined) this.show(this.time);
     }
 
-    summary(values) {
-        if (!values.length) return `${this.name}: nothing is known`;
-        const range = `from ${this.digits(Math.min(...values))} to ${this.digits(Math.max(...values))}`;
+    summary() {
+        const range = `from ${this.digits(this.least)} to ${this.digits(this.most)}`;
         return `${this.name} over time: ${range}${this.limit ? `; ${this.limit.label}` : ""}`;
     }
 
@@ -191,8 +189,17 @@ export class Chart {
     }
 }
 
-function extremes(values, limit) {
-    return values.length ? values : [limit ?? 0];
+/** The least and the largest value of some series; 0 where there are none. */
+function extremes(series) {
+    let [least, most] = [Infinity, -Infinity];
+    for (const { values } of series) {
+        for (const value of values) {
+            if (value === null) continue;
+            if (value < least) least = value;
+            if (value > most) most = value;
+        }
+    }
+    return least <= most ? [least, most] : [0, 0];
 }
 
 /** A series as a line; points that nobody could tell from the one before are left out. */

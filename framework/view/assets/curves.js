@@ -50,11 +50,11 @@ export function needed(force, normal) {
 }
 
 function friction({ data, motion }) {
-    const { states } = motion;
+    const { contacts } = motion.states.columns;
     const all = motion.hand.fingers.map((finger, f) => {
         const values = motion.time.map((_, k) => {
-            const [force, contact] = [states.forces(k)[f], states.contact(k, f)];
-            return force && contact ? needed(force, contact.normal) : null;
+            const [force, contact] = [data.grip.forces[k][f], contacts[k][f]];
+            return force.length && contact.length ? needed(force, contact.slice(3, 6)) : null;
         });
         return { name: finger.name, color: fingerColor(f), times: motion.time, values };
     });
@@ -69,15 +69,16 @@ function friction({ data, motion }) {
 /** The joints' shares of their limits, as the largest of each finger, and for each finger joint by joint. */
 function ofJoints(motion, times, share) {
     const { fingers } = motion.hand;
-    const joint = (finger, j) => times.map((_, k) => Math.abs(share(k, finger.first + j)));
-    const each = fingers.map((finger) => finger.joints.map((_, j) => joint(finger, j)));
-    const largest = fingers.map((finger, f) => {
-        const values = times.map((_, k) => each[f].reduce((most, values) => Math.max(most, values[k]), 0));
-        return { name: finger.name, color: fingerColor(f), times, values };
+    const largest = fingers.map(({ name, first, joints }, f) => {
+        const values = times.map((_, k) => joints.reduce((most, _, j) => Math.max(most, Math.abs(share(k, first + j))), 0));
+        return { name, color: fingerColor(f), times, values };
     });
-    const joints = (finger, f) => ({
-        name: `joints of ${finger.name}`,
-        series: finger.joints.map(({ name }, j) => ({ name, color: fingerColor(j), times, values: each[f][j] })),
+    // Joint by joint only once somebody asks.
+    const joints = ({ name, first, joints }) => ({
+        name: `joints of ${name}`,
+        get series() {
+            return joints.map(({ name }, j) => ({ name, color: fingerColor(j), times, values: times.map((_, k) => Math.abs(share(k, first + j))) }));
+        },
     });
     return [{ name: "fingers", series: largest }, ...fingers.map(joints)];
 }

@@ -11,9 +11,11 @@ use small::{data, plan};
 #[test]
 fn the_page_of_a_hand_has_joints_that_follow_and_tips_to_check() {
     let mut hand = plan().scenario.problem.hand;
-    hand.finger[0].joint[2].mimic =
-        Some(regrasp_api::Mimic { joint: "b".into(), multiplier: 0.5, offset: 0.1 });
-    hand.finger[0].rest[2] = 0.15;
+    let mut driven = hand.finger[0].joint[2].clone();
+    driven.name = "d".into();
+    driven.mimic = Some(regrasp_api::Mimic { joint: "c".into(), multiplier: 0.5, offset: 0.1 });
+    hand.finger[0].joint.push(driven);
+    hand.finger[0].rest.push(0.5 * 0.2 + 0.1);
     let view = HandView {
         hand: &hand,
         ball_radius: 0.02,
@@ -24,17 +26,18 @@ fn the_page_of_a_hand_has_joints_that_follow_and_tips_to_check() {
     let page = hand_page(&view).unwrap();
     assert!(page.contains("handpage.js") && !page.contains("data-module=\"main.js\""));
     let data = data(&page);
-    let joint = &data["hand"]["fingers"][0]["joints"][2];
-    assert_eq!(joint["mimic"], json!({"joint": 1, "multiplier": 0.5, "offset": 0.1}));
-    assert_eq!(data["hand"]["fingers"][0]["rest"], json!([0.0, 0.1, 0.15]));
+    let joint = &data["hand"]["fingers"][0]["joints"][3];
+    assert_eq!(joint["mimic"], json!({"joint": 2, "multiplier": 0.5, "offset": 0.1}));
+    assert_eq!(data["hand"]["fingers"][0]["rest"], json!([0.0, 0.1, 0.2, 0.2]));
     assert_eq!(data["ball"], json!({"position": [0.0, 0.01, 0.09], "quality": 0.4}));
     assert_eq!(data["lists"], json!([["notes", ["<script>"]]]));
     // The last of the postures: all at their upper ends, but for the joint that is driven.
     let last = &data["checks"][2];
-    assert_eq!(last["joints"], json!([1.0, 1.0, 0.6]));
-    // The second and the third joint turn about y, the first about x.
-    let (bend, both) = (1.0_f64, 1.6_f64);
-    let along = Vec3::new(0.05 * (bend.sin() + both.sin()), 0.0, 0.05 + 0.05 * (bend.cos() + both.cos()));
+    assert_eq!(last["joints"], json!([1.0, 1.0, 1.0, 0.6]));
+    // The first joint turns about x, the others about y, by as much as all before them together.
+    let bends = [0.0_f64, 1.0, 2.0, 2.6];
+    let along = bends.map(|angle| Vec3::new(angle.sin(), 0.0, angle.cos()) * 0.05);
+    let along = along.into_iter().fold(Vec3::zeros(), |sum, part| sum + part);
     let turned = nalgebra::Rotation3::from_axis_angle(&Vec3::x_axis(), 1.0) * along;
     let tip = &last["tips"][0];
     let expected = [turned.x, turned.y, 0.05 + turned.z];
