@@ -106,3 +106,4 @@ def show_all_plots(page):
     hidden = page.locator(".chip[aria-pressed=false]")
     while hidden.count():
         hidden.first.click()
+    page.wait_for_function("[...document.querySelectorAll('.curve')].every((curve) => curve.querySelector('path.line'))")

@@ -41,6 +41,7 @@ export class PlotBar {
                 if (shown) this.chosen.add(key);
                 chip.setAttribute("aria-pressed", shown);
                 this.charts[i].figure.hidden = !shown;
+                this.charts[i].draw();
                 if (this.time !== undefined) this.charts[i].show(this.time);
             });
             return chip;
