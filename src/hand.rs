@@ -1,5 +1,6 @@
 //! `regrasp hand`: how a robot's file is understood, and the hand file that it becomes.
 
+mod page;
 mod scenario;
 mod values;
 mod xacro;
@@ -8,6 +9,7 @@ use crate::numbers::whole;
 use crate::outputs::{self, HAND_MARK, Kind, OverwriteArgs};
 use crate::table::Table;
 use crate::terminal::printable;
+use crate::view::PageArgs;
 use crate::{Failure, inputs, say, say_json};
 use clap::Args;
 use regrasp::api::{FingerIndex, Hand, HandDescription, JointDescription, Vec3};
@@ -29,7 +31,7 @@ The position that is proposed for an \
 `regrasp plan` tells whether it is a good one.\n\n\
 Examples:\n  regrasp hand my-hand.urdf\n  regrasp hand my-hand.urdf --tips \
  thumb_tip,index_tip,middle_tip,ring_tip --fingertip-radius 0.012\n  \
-regrasp hand my-hand.urdf --packages ~/ros/src -o my-hand.toml")]
+regrasp hand my-hand.urdf --packages ~/ros/src -o my-hand.toml\n  regrasp hand my-hand.urdf --view")]
 pub struct HandArgs {
     /// A URDF or MJCF file, or a xacro file, which `xacro` expands if it is installed.
     pub file: PathBuf,
@@ -103,6 +105,8 @@ pub struct HandArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
+    pub page: PageArgs,
+    #[command(flatten)]
     pub overwrite: OverwriteArgs,
     /// Print one JSON object instead of text.
     #[arg(long)]
@@ -116,7 +120,7 @@ pub fn run(args: &HandArgs) -> Result<(), Failure> {
     let mut wished: Vec<(&Path, Kind)> =
         args.output.as_deref().map(|path| (path, kind)).into_iter().collect();
     wished.extend(hand_beside.as_deref().map(|path| (path, Kind::Hand)));
-    outputs::check(&inputs::of_robot(&args.file, &args.packages), &wished, args.overwrite)?;
+    args.page.check(&inputs::of_robot(&args.file, &args.packages), &wished, args.overwrite)?;
     let ReadHand { description, report } = read(args)?;
     let hand = ChainHand::new(description).map_err(Failure::refused)?;
     let understood = Understood {
@@ -131,8 +135,11 @@ pub fn run(args: &HandArgs) -> Result<(), Failure> {
             if args.scenario { understood.scenario(args, path)? } else { hand_file(hand.description())? };
         write(path, &text)?;
     }
-    if args.output.as_deref().is_some_and(outputs::is_standard) {
-        // Standard output is the hand file's.
+    if args.page.wanted() {
+        args.page.show(&understood.page()?, args.output.as_deref())?;
+    }
+    if args.page.is_standard() || args.output.as_deref().is_some_and(outputs::is_standard) {
+        // Standard output is the hand file's, or the page's.
         let _ = std::io::stderr().write_all(printable(&understood.text(None)).as_bytes());
         return Ok(());
     }
@@ -295,20 +302,28 @@ impl Understood<'_> {
         let how = if self.report.tips_guessed { "guessed; `--tips` chooses others" } else { "as given" };
         text += &format!("\nfingers ({how}; boxes of their tips' centres in mm)\n{}", self.finger_table());
         text += &format!("\njoints (degrees, rad/s, rad/s², N·m)\n{}", self.joint_table());
-        text += &listed("fingertips' centres", &self.report.tip_centers);
-        text += &listed("collision shapes", &self.report.shapes);
-        let pairs: Vec<String> =
-            self.report.touching.iter().map(|[a, b]| format!("`{a}` and `{b}`")).collect();
-        text += &listed("pairs that always touch, excluded (beside neighbours)", &pairs);
+        for (heading, lines) in self.lists() {
+            text += &listed(heading, &lines);
+        }
+        text += &self.proposal();
+        text + &written.map(|path| format!("\nwritten to {}\n", path.display())).unwrap_or_default()
+    }
+
+    /// What is told line by line; headings without lines are none.
+    fn lists(&self) -> [(&'static str, Vec<String>); 6] {
+        let report = self.report;
+        let pairs = report.touching.iter().map(|[a, b]| format!("`{a}` and `{b}`")).collect();
         let often = |([a, b], share): &([String; 2], f64)| {
             format!("`{a}` and `{b}` in {:.0} % of the postures: not excluded", 100.0 * share)
         };
-        let often: Vec<String> = self.report.often_touching.iter().map(often).collect();
-        text += &listed("pairs that touch often", &often);
-        text += &listed("ignored", &self.report.ignored);
-        text += &listed("notes", &self.report.notes);
-        text += &self.proposal();
-        text + &written.map(|path| format!("\nwritten to {}\n", path.display())).unwrap_or_default()
+        [
+            ("fingertips' centres", report.tip_centers.clone()),
+            ("collision shapes", report.shapes.clone()),
+            ("pairs that always touch, excluded (beside neighbours)", pairs),
+            ("pairs that touch often", report.often_touching.iter().map(often).collect()),
+            ("ignored", report.ignored.clone()),
+            ("notes", report.notes.clone()),
+        ]
     }
 
     fn finger_table(&self) -> String {

@@ -2,10 +2,12 @@
 
 use crate::outputs::{self, Kind, OverwriteArgs};
 use crate::terminal::printable;
+use crate::view::PageArgs;
 use crate::{Failure, say, say_json};
 use clap::Args;
 use regrasp::api::{MassProperties, Mesh, MeshError, MeshSource, Twin, Vec3};
 use regrasp::formats::{FormatError, load_mesh};
+use regrasp::view::{ObjectView, object_page};
 use regrasp::world::{Measures, automatic_twin, measure, outward_bodies, rigid_body, roughness};
 use serde_json::{Value, json};
 use std::io::Write;
@@ -42,6 +44,8 @@ pub struct ObjectArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
+    pub page: PageArgs,
+    #[command(flatten)]
     pub overwrite: OverwriteArgs,
     /// Print one JSON object instead of text.
     #[arg(long)]
@@ -65,7 +69,7 @@ fn number(text: &str, low: f64, high: f64, what: &str) -> Result<f64, String> {
 
 pub fn run(args: &ObjectArgs) -> Result<(), Failure> {
     let wished = args.output.as_deref().map(|path| (path, Kind::Export));
-    outputs::check(std::slice::from_ref(&args.file), wished.as_slice(), args.overwrite)?;
+    args.page.check(std::slice::from_ref(&args.file), wished.as_slice(), args.overwrite)?;
     let mut mesh = load(args)?;
     if args.repair {
         mesh = outward_bodies(mesh);
@@ -73,12 +77,12 @@ pub fn run(args: &ObjectArgs) -> Result<(), Failure> {
     let mesh = rigid_body(mesh, args.assembly).map_err(|fault| {
         Failure::bad_input(format!("the mesh of `{}` is refused: {fault}", args.file.display()))
     })?;
+    let standard = args.output.as_deref().is_some_and(outputs::is_standard);
     if let Some(path) = &args.output {
-        let bytes = regrasp::export::stl(&mesh);
-        if outputs::is_standard(path) {
-            return crate::output::standard().write_all(&bytes).map_err(Failure::bad_input);
+        write(path, &mesh)?;
+        if standard && !args.page.wanted() {
+            return Ok(());
         }
-        regrasp::plan::write_file(path, |out| out.write_all(&bytes)).map_err(Failure::bad_input)?;
     }
     let understood = Understood {
         measures: measure(&mesh),
@@ -88,7 +92,26 @@ pub fn run(args: &ObjectArgs) -> Result<(), Failure> {
         mesh: &mesh,
         args,
     };
+    if args.page.wanted() {
+        args.page.show(&understood.page()?, args.output.as_deref())?;
+    }
+    if standard {
+        return Ok(());
+    }
+    if args.page.is_standard() {
+        // Standard output is the page's.
+        let _ = std::io::stderr().write_all(printable(&understood.text()).as_bytes());
+        return Ok(());
+    }
     if args.json { say_json(&understood.json()) } else { say(&printable(&understood.text())) }
+}
+
+fn write(path: &Path, mesh: &Mesh) -> Result<(), Failure> {
+    let bytes = regrasp::export::stl(mesh);
+    if outputs::is_standard(path) {
+        return crate::output::standard().write_all(&bytes).map_err(Failure::bad_input);
+    }
+    regrasp::plan::write_file(path, |out| out.write_all(&bytes)).map_err(Failure::bad_input)
 }
 
 /// The mesh; `--repair` turns one round whose facets all look inward.
@@ -148,33 +171,40 @@ impl Understood<'_> {
     }
 
     fn text(&self) -> String {
-        let Measures { surfaces, genus, sharp_edges, sharp_length, thinnest, .. } = &self.measures;
-        let (size, center) = (self.size() * 1e3, self.mass.p_OCm * 1e3);
-        let inertia = self.inertia();
         let mut text = format!("{}: {} facets\n", self.args.file.display(), self.mesh.facets().len());
-        text += &format!("  size             {:.2} × {:.2} × {:.2} mm\n", size.x, size.y, size.z);
-        text += &format!("  volume           {:.3} cm³\n", self.mass.volume * 1e6);
-        text += &format!("  centre of mass   {:.3}, {:.3}, {:.3} mm\n", center.x, center.y, center.z);
-        text += &format!(
-            "  inertia          {:.4e}, {:.4e}, {:.4e} kg·m² for {} kg\n",
-            inertia[0][0], inertia[1][1], inertia[2][2], self.args.mass
-        );
-        text += &format!("  surfaces         {surfaces}, with {genus} handles\n");
-        text += &format!("  sharp edges      {sharp_edges} of {:.1} mm together\n", sharp_length * 1e3);
-        if let Some((wall, at)) = thinnest {
-            let at = at * 1e3;
-            text += &format!(
-                "  thinnest wall    {:.3} mm, near {:.1}, {:.1}, {:.1} mm\n",
-                wall * 1e3,
-                at.x,
-                at.y,
-                at.z
-            );
+        for (name, value) in self.facts() {
+            text += &format!("  {name:<17}{value}\n");
         }
-        text + &self.felt()
+        if let Some(path) = self.args.output.as_deref() {
+            text += &format!("  written to       {}\n", path.display());
+        }
+        text
     }
 
-    /// What a fingertip feels, and what is written.
+    /// What is told in a few words each.
+    fn facts(&self) -> Vec<(&'static str, String)> {
+        let Measures { surfaces, genus, sharp_edges, sharp_length, thinnest, .. } = &self.measures;
+        let (size, center) = (self.size() * 1e3, self.mass.p_OCm * 1e3);
+        let [[xx, ..], [_, yy, _], [.., zz]] = self.inertia();
+        let mut facts = vec![
+            ("size", format!("{:.2} × {:.2} × {:.2} mm", size.x, size.y, size.z)),
+            ("volume", format!("{:.3} cm³", self.mass.volume * 1e6)),
+            ("centre of mass", format!("{:.3}, {:.3}, {:.3} mm", center.x, center.y, center.z)),
+            ("inertia", format!("{xx:.4e}, {yy:.4e}, {zz:.4e} kg·m² for {} kg", self.args.mass)),
+            ("surfaces", format!("{surfaces}, with {genus} handles")),
+            ("sharp edges", format!("{sharp_edges} of {:.1} mm together", sharp_length * 1e3)),
+        ];
+        facts.extend(thinnest.map(|(wall, at)| {
+            let at = at * 1e3;
+            let wall = wall * 1e3;
+            ("thinnest wall", format!("{wall:.3} mm, near {:.1}, {:.1}, {:.1} mm", at.x, at.y, at.z))
+        }));
+        facts.push(("contact surface", self.felt()));
+        facts.extend(self.note().map(|note| ("note", note)));
+        facts
+    }
+
+    /// What a fingertip feels.
     fn felt(&self) -> String {
         let rough = format!(
             "{:.0} % of the places that a fingertip of {:.1} mm can touch lie at a concave edge",
@@ -189,17 +219,28 @@ impl Understood<'_> {
             ),
             None => "the mesh itself".to_owned(),
         };
-        let mut text = format!("  contact surface  {surface} ({rough})\n");
+        format!("{surface} ({rough})")
+    }
+
+    /// What is likely to be meant where no hand spans the object.
+    fn note(&self) -> Option<String> {
         let width = self.size().iter().copied().fold(f64::INFINITY, f64::min);
-        if width > 0.15 {
-            let scale = self.args.scale * 0.06 / width;
-            text += &format!(
-                "  note             no hand spans it; `scale = {scale:.2e}` makes its width 60 mm\n"
-            );
-        }
-        if let Some(path) = self.args.output.as_deref() {
-            text += &format!("  written to       {}\n", path.display());
-        }
-        text
+        let scale = self.args.scale * 0.06 / width;
+        (width > 0.15).then(|| format!("no hand spans it; `scale = {scale:.2e}` makes its width 60 mm"))
+    }
+
+    /// The page that shows the object.
+    fn page(&self) -> Result<String, Failure> {
+        let name = self.args.file.file_name().unwrap_or_default().to_string_lossy();
+        let facts = self.facts();
+        object_page(&ObjectView {
+            name: &name,
+            mesh: self.mesh,
+            twin: self.twin.as_ref(),
+            p_OCm: self.mass.p_OCm.into(),
+            fingertip_radius: self.args.fingertip_radius,
+            facts: facts.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
+        })
+        .map_err(Failure::bad_input)
     }
 }

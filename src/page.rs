@@ -1,5 +1,7 @@
 //! What a page shows beside the plan itself, and places of a plan in words.
 
+mod grip;
+
 use crate::api::{BodyPair, EdgeKind, Hand, NodeId, Problem};
 use crate::plan::{Criterion, Place, Plan, state_record};
 use crate::planner::{EdgeRecord, End, Fate, GraphRecord};
@@ -14,6 +16,7 @@ pub fn of_plan(plan: &Plan) -> Extras {
         checks: verdict.checks.iter().map(|check| check_row(check, problem)).collect(),
         // A plan without sense has no figures; its failed checks say why.
         curves: crate::verify::series(plan).ok().map(|figures| curves(plan, &figures.concat())),
+        grip: grip::grip(plan),
         ..Extras::default()
     }
 }
@@ -28,6 +31,9 @@ fn check_row(check: &Check, problem: &Problem) -> CheckRow {
         unit: check.unit.into(),
         place: place_text(&check.place, problem),
         time: check.place.time,
+        finger: check.place.finger,
+        joint: check.place.joint,
+        pair: check.place.pair,
     }
 }
 
@@ -43,6 +49,7 @@ fn curves(plan: &Plan, figures: &[StateFigures]) -> StateCurves {
         },
         clearance: figures.iter().map(|figure| figure.clearance.map(|(distance, _)| distance)).collect(),
         clearance_pair: figures.iter().map(pair_of).collect(),
+        least_clearance: problem.limits.tolerances.clearance,
     }
 }
 

@@ -85,7 +85,7 @@ class Held:
         if not forces:
             return
         needed = ((self.plan.get("certificate") or {}).get("holds") or {}).get("friction") or {}
-        if "hold" not in self.problem:
+        if not self.problem.get("hold"):
             mu = max(mu, needed.get("value") or 0.0)
         X_HO = pose_of_state(q)
         joints = np.concatenate(q["joints"])

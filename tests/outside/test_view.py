@@ -111,7 +111,7 @@ def test_the_keyboard_drives_it(folder, plan, visit):
     page.keyboard.press("+")
     assert page.locator("#speed").input_value() == "2"
     page.keyboard.press("f")
-    assert not page.get_by_role("checkbox", name="Friction cones").is_checked()
+    assert page.get_by_role("checkbox", name="Friction cones").is_checked()
     page.keyboard.press("?")
     assert page.get_by_role("dialog").is_visible()
     page.keyboard.press("Escape")
@@ -136,9 +136,9 @@ def test_segments_can_be_chosen_and_follow_the_play_head(folder, plan, visit):
 
 def test_curves_have_the_play_head_and_take_clicks(folder, visit):
     page = ready(visit, folder / "plan.html").page
-    plots = page.locator(".plot")
-    assert plots.count() == 2
-    box = plots.nth(1).bounding_box()
+    plots = page.locator(".curve:visible")
+    assert plots.count() == 3
+    box = plots.nth(1).locator(".area").bounding_box()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 20)
     half = page.evaluate("regrasp.app.motion.end") / 2
     assert page.evaluate("regrasp.time") == pytest.approx(half, rel=0.02)
@@ -286,10 +286,10 @@ def test_the_graph_has_its_tab(folder, visit, keep_picture):
     fates = {edge["fate"] for edge in graph["edges"]}
     assert "used" in fates
     assert page.locator(".edges.used path").count() > 0
-    before = page.evaluate("regrasp.app.stage.body.position.toArray()")
+    before = page.evaluate("regrasp.app.actors[0].body.position.toArray()")
     nodes.nth(2).dispatch_event("click")
     assert "Grasp 2" in page.locator(".node-details").inner_text()
-    assert page.evaluate("regrasp.app.stage.body.position.toArray()") != before or len(set(map(str, graph["states"]["object"]))) < 8
+    assert page.evaluate("regrasp.app.actors[0].body.position.toArray()") != before or len(set(map(str, graph["states"]["object"]))) < 8
     keep_picture(page, "view-graph.png")
     page.keyboard.press("Home")
     assert "Point at a grasp" in page.locator(".node-details").inner_text()
@@ -382,7 +382,7 @@ def test_a_simulated_object_goes_beside_the_plan(folder, regrasp, visit, keep_pi
     page = seen.page
     assert page.get_by_role("checkbox", name="Simulated object").is_checked()
     page.evaluate("regrasp.seek(0.5)")
-    apart = page.evaluate("regrasp.app.stage.ghost.position.distanceTo(regrasp.app.stage.body.position)")
+    apart = page.evaluate("regrasp.app.actors[0].ghost.position.distanceTo(regrasp.app.actors[0].body.position)")
     assert 0 < apart < 0.02, "near the planned object, but not the same"
     keep_picture(page, "view-replay.png")
     quiet(seen, folder / "replay.html")

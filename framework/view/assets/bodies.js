@@ -9,36 +9,31 @@ export const FINGER_COLORS = ["#e69f00", "#56b4e9", "#009e73", "#cc79a7", "#d55e
 /** Facets that meet at less than this are one smooth surface (cosine). */
 const CREASE = Math.cos((32 * Math.PI) / 180);
 
-/** A lit surface: `look` for any, `fine` beside it where a graphics processor draws. */
-export function surface(soft, look, fine) {
-    return soft ? new THREE.MeshLambertMaterial(look) : new THREE.MeshStandardMaterial({ ...look, ...fine });
-}
-
 export function place(object, pose) {
     object.position.set(...pose.p);
     object.quaternion.set(pose.q[1], pose.q[2], pose.q[3], pose.q[0]);
 }
 
-/** A mesh for a shape of the plan, in the frame of what it belongs to; `extent` is how far an endless one is drawn (m). */
-export function shapeMesh(shape, material, extent) {
-    const mesh = new THREE.Mesh(shapeGeometry(shape, extent), material);
+/** A mesh for a shape of the plan, in the frame of what it belongs to. */
+export function shapeMesh(shape, material) {
+    const mesh = new THREE.Mesh(shapeGeometry(shape), material);
     const group = new THREE.Group();
     const [x, y, z, w, i, j, k] = shape.pose;
     place(group, { p: [x, y, z], q: [w, i, j, k] });
     if (shape.kind === "capsule") {
         place(mesh, { p: scale(add(shape.from, shape.to), 0.5), q: fromZ(unit(sub(shape.to, shape.from))) });
     } else if (shape.kind === "half-space") {
-        const n = unit(shape.normal);
-        place(mesh, { p: scale(n, shape.offset), q: fromZ(n) });
+        const normal = unit(shape.normal);
+        place(mesh, { p: scale(normal, shape.offset), q: fromZ(normal) });
+        group.userData.endless = { normal, offset: shape.offset };
     }
-    group.userData.endless = shape.kind === "half-space";
     mesh.castShadow = !group.userData.endless;
     mesh.receiveShadow = true;
     group.add(mesh);
     return group;
 }
 
-function shapeGeometry(shape, extent) {
+function shapeGeometry(shape) {
     switch (shape.kind) {
         case "sphere":
             return new THREE.SphereGeometry(shape.radius, 32, 20);
@@ -49,7 +44,7 @@ function shapeGeometry(shape, extent) {
             return geometry.rotateX(Math.PI / 2);
         }
         case "half-space":
-            return new THREE.CircleGeometry(extent, 64);
+            return new THREE.CircleGeometry(1, 64);
         default:
             return meshGeometry(shape);
     }
@@ -107,10 +102,10 @@ function facetsAround(count, facets) {
 }
 
 /** The paint of the object: eight octants, the four dark ones of different colours, so that no turn leaves it as it was. */
-export function painted(soft, geometry) {
+export function painted(stage, geometry) {
     geometry.computeBoundingBox();
     const center = geometry.boundingBox.getCenter(new THREE.Vector3());
-    const material = surface(soft, {}, { roughness: 0.55, metalness: 0 });
+    const material = stage.surface({}, { roughness: 0.55, metalness: 0 });
     const color = (hex) => ({ value: new THREE.Color(hex) });
     const paint = {
         bodyCenter: { value: center },

@@ -2,12 +2,12 @@
 
 import { States } from "./motion.js";
 import { FINGER_COLORS } from "./bodies.js";
-import { drawing, element } from "./curves.js";
+import { drawing, element } from "./dom.js";
 import { angleBetween, conjugate, multiply, norm, rotate, scale, sub } from "./pose.js";
 
 /** What can come of an edge: how it is called, and whether it is drawn at first. */
 const FATES = [
-    ["failed", "failed", true],
+    ["failed", "failed", false],
     ["unchecked", "not checked", true],
     ["valid", "valid", true],
     ["executable", "executable", true],
@@ -23,6 +23,7 @@ export class GraphTab {
         this.graph = data.graph;
         this.states = new States(data.graph.states, app.motion.hand);
         this.count = this.states.count;
+        this.bodyRadius = data.object.vertices.reduce((most, x) => Math.max(most, Math.abs(x)), 1e-6);
         this.places = layout(this.states, this.graph.edges, data);
         this.size = Math.min(16, 220 / Math.sqrt(this.count + 1));
         this.details = element("p", { class: "node-details", "aria-live": "polite" });
@@ -51,13 +52,14 @@ export class GraphTab {
     picture() {
         const root = drawing("g");
         this.layers = {};
-        for (const [fate] of FATES) {
+        for (const [fate, , shown] of FATES) {
             const layer = drawing("g", { class: `edges ${fate}` });
             for (const kind of ["grasp", "transfer-regrasp"]) {
                 const chosen = this.graph.edges.filter((edge) => edge.fate === fate && edge.kind === kind);
                 const d = chosen.map((edge) => `M${this.spot(edge.from)}L${this.spot(edge.to)}`).join("");
                 if (d) layer.append(drawing("path", { d, class: kind }));
             }
+            layer.classList.toggle("off", !shown);
             this.layers[fate] = layer;
             root.append(layer);
         }
@@ -96,7 +98,7 @@ export class GraphTab {
         this.app.motion.hand.fingers.forEach((_, f) => {
             const contact = this.states.contact(node, f);
             if (!contact) return;
-            const p = scale(rotate(pose.q, contact.point), r / this.app.stage.bodyRadius);
+            const p = scale(rotate(pose.q, contact.point), r / this.bodyRadius);
             group.append(drawing("circle", { cx: p[0], cy: -p[1], r: r * 0.24, fill: FINGER_COLORS[f % FINGER_COLORS.length] }));
         });
         if (end) group.append(drawing("text", { y: -r * 1.25, "font-size": r * 0.75 }, end));
@@ -134,7 +136,7 @@ export class GraphTab {
 
     showNode(node) {
         this.shown = true;
-        this.app.stage.show(this.states.snapshot(node));
+        this.app.pose(this.states.snapshot(node));
         this.app.title(`Grasp ${node} of the graph`, this.graph.ends[node] ?? "");
         this.describe(node);
     }
@@ -163,7 +165,7 @@ export class GraphTab {
         this.describe(null);
         this.app.captioned = null;
         if (!this.app.snapshot) return;
-        this.app.stage.show(this.app.snapshot);
+        this.app.pose(this.app.snapshot);
         this.app.caption(this.app.snapshot);
     }
 

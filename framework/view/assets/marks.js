@@ -59,6 +59,42 @@ function coneMark(geometry, color) {
     return group;
 }
 
+/** The forces of the fingers on the object as arrows that end at the contacts, in the object's frame. */
+export class ForceArrows {
+    /** `longest` is how long the arrow of the force `most` (N) is (m). */
+    constructor(fingers, most, longest) {
+        this.group = new THREE.Group();
+        this.perNewton = longest / most;
+        const shaft = new THREE.CylinderGeometry(1, 1, 1, 12).rotateX(Math.PI / 2).translate(0, 0, 0.5);
+        const head = new THREE.ConeGeometry(1, 1, 18).rotateX(Math.PI / 2).translate(0, 0, -0.5);
+        const [thin, wide] = [longest * 0.022, longest * 0.066];
+        for (let f = 0; f < fingers; f++) {
+            const look = { color: FINGER_COLORS[f % FINGER_COLORS.length], depthTest: false, transparent: true };
+            const arrow = new THREE.Group();
+            arrow.add(marked(shaft, new THREE.MeshBasicMaterial(look), 10), marked(head, new THREE.MeshBasicMaterial(look), 10));
+            arrow.userData = { thin, wide, tall: longest * 0.17 };
+            this.group.add(arrow);
+        }
+    }
+
+    show(contacts, forces) {
+        this.group.children.forEach((arrow, f) => {
+            const force = forces?.[f];
+            const length = force ? norm(force) * this.perNewton : 0;
+            arrow.visible = Boolean(contacts[f]) && length > 0;
+            if (!arrow.visible) return;
+            const along = unit(force);
+            place(arrow, { p: contacts[f].point, q: fromZ(along) });
+            const { thin, wide, tall } = arrow.userData;
+            const size = Math.min(tall, length * 0.6);
+            const [shaft, head] = arrow.children;
+            shaft.scale.set(thin, thin, Math.max(length - size, 1e-9));
+            shaft.position.z = -length;
+            head.scale.set((wide * size) / tall, (wide * size) / tall, size);
+        });
+    }
+}
+
 /** The traces of one finger's transfers on one surface, as ribbons; those up to the play head are drawn, the present one stronger. */
 export class Trace {
     /**

@@ -1,47 +1,14 @@
 // What the plan means at any time: between two states joints and position move linearly, orientation by slerp.
 
-import { aboutAxis, apply, between, compose, mix, poseAt, scale, unit } from "./pose.js";
-
-/** Forward kinematics of the hand. */
-export class Hand {
-    constructor(hand) {
-        this.tipRadius = hand.tip_radius;
-        this.fingers = hand.fingers.map((finger) => ({
-            name: finger.name,
-            base: poseAt(finger.base),
-            tip: finger.tip,
-            joints: finger.joints.map((joint) => ({ ...joint, origin: poseAt(joint.origin) })),
-        }));
-        this.jointCount = this.fingers.reduce((sum, finger) => sum + finger.joints.length, 0);
-    }
-
-    /** The frames of all links, finger by finger, for all joints of the hand in one row. */
-    links(joints) {
-        let next = 0;
-        return this.fingers.map((finger) => {
-            let frame = finger.base;
-            return finger.joints.map((joint) => {
-                const q = joints[next++];
-                const move = joint.slides
-                    ? { p: scale(joint.axis, q), q: [1, 0, 0, 0] }
-                    : { p: [0, 0, 0], q: aboutAxis(joint.axis, q) };
-                frame = compose(compose(frame, joint.origin), move);
-                return frame;
-            });
-        });
-    }
-
-    /** The fingertips' centres, from the frames of the links. */
-    tips(links) {
-        return this.fingers.map((finger, f) => apply(links[f].at(-1), finger.tip));
-    }
-}
+import { Hand } from "./hand.js";
+import { between, mix, poseAt, unit } from "./pose.js";
 
 /** Columns of states. */
 export class States {
-    constructor(columns, hand) {
+    constructor(columns, hand, grip = null) {
         this.columns = columns;
         this.hand = hand;
+        this.grip = grip;
         this.count = columns.time.length;
     }
 
@@ -60,6 +27,11 @@ export class States {
         return c.length ? { point: c.slice(0, 3), normal: c.slice(3, 6), onTip: c.slice(6, 9) } : null;
     }
 
+    /** The force (N, in O) of each finger at state k; null where it does not hold, or nothing is known. */
+    forces(k) {
+        return this.grip ? this.grip.forces[k].map((force) => (force.length ? force : null)) : null;
+    }
+
     /** Everything a fraction of the way from state k to the next. */
     snapshot(k, fraction = 0) {
         const next = fraction > 0 ? k + 1 : k;
@@ -67,7 +39,9 @@ export class States {
         const links = this.hand.links(joints);
         const object = between(this.object(k), this.object(next), fraction);
         const contacts = this.hand.fingers.map((_, f) => this.contactBetween(k, next, fraction, f));
-        return { object, joints, links, tips: this.hand.tips(links), contacts, moving: null };
+        const [a, b] = [this.forces(k), this.forces(next)];
+        const forces = a && a.map((force, f) => (force && b[f] ? mix(force, b[f], fraction) : null));
+        return { object, joints, links, tips: this.hand.tips(links), contacts, forces, moving: null };
     }
 
     contactBetween(k, next, fraction, finger) {
@@ -84,7 +58,7 @@ export class States {
 export class Motion {
     constructor(data) {
         this.hand = new Hand(data.hand);
-        this.states = new States(data.motion.states, this.hand);
+        this.states = new States(data.motion.states, this.hand, data.grip);
         const time = data.motion.states.time;
         this.segments = data.motion.segments.map((segment, index) => ({
             ...segment,
@@ -118,12 +92,7 @@ export class Motion {
 
     /** The largest distance (m) between the fingertips as computed here and as the program that wrote the page did. */
     disagreement(checks) {
-        let worst = 0;
-        for (const { state, tips } of checks) {
-            const here = this.hand.tips(this.hand.links(this.states.joints(state)));
-            tips.forEach((tip, f) => (worst = Math.max(worst, Math.hypot(...tip.map((x, i) => x - here[f][i])))));
-        }
-        return worst;
+        return Math.max(0, ...checks.map(({ state, tips }) => this.hand.disagreement(this.states.joints(state), tips)));
     }
 }
 

@@ -1,12 +1,19 @@
-// The play head: time, speed, playing or not; tells everybody who listens.
+// The play head: time, speed, playing or not; tells everybody who listens. Its clock lasts as long as the longest of the plans,
+// or the chosen one, through whose segments it steps.
 
 export class Player {
     constructor(motion) {
         this.motion = motion;
-        this.time = motion.begin;
+        [this.begin, this.end] = [motion.begin, motion.end];
+        this.time = this.begin;
         this.speed = 1;
         this.playing = false;
         this.listeners = [];
+    }
+
+    setSpan([begin, end]) {
+        [this.begin, this.end] = [begin, end];
+        this.time = Math.min(Math.max(this.time, begin), end);
     }
 
     onChange(listener) {
@@ -18,13 +25,13 @@ export class Player {
     }
 
     seek(time) {
-        this.time = Math.min(Math.max(time, this.motion.begin), this.motion.end);
+        this.time = Math.min(Math.max(time, this.begin), this.end);
         this.tell();
     }
 
     play() {
-        if (this.motion.duration <= 0) return;
-        if (this.time >= this.motion.end) this.time = this.motion.begin;
+        if (this.end <= this.begin) return;
+        if (this.time >= this.end) this.time = this.begin;
         this.playing = true;
         this.last = null;
         this.tell();
@@ -52,8 +59,8 @@ export class Player {
         this.last = now;
         // A page that was asleep does not jump.
         this.time += Math.min(passed, 0.25) * this.speed;
-        if (this.time >= this.motion.end) {
-            this.time = this.motion.end;
+        if (this.time >= this.end) {
+            this.time = this.end;
             this.playing = false;
         }
         this.tell();

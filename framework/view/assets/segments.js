@@ -1,7 +1,7 @@
 // The table of contents: every segment, what moves and how far.
 
 import { FINGER_COLORS } from "./bodies.js";
-import { element } from "./curves.js";
+import { element } from "./dom.js";
 import { angleBetween, norm, sub } from "./pose.js";
 
 const degrees = (angle) => `${((angle * 180) / Math.PI).toFixed(1)}°`;
@@ -62,9 +62,10 @@ export class SegmentList {
     }
 }
 
-/** The segments as the background of the slider. */
-export function strip(motion) {
+/** The segments as the background of the slider, whose ends are those of `span`. */
+export function strip(motion, span) {
     if (motion.duration <= 0) return "none";
-    const at = (time) => `${(((time - motion.begin) / motion.duration) * 100).toFixed(3)}%`;
-    return `linear-gradient(to right, ${motion.segments.map((s) => `${segmentColor(s)} ${at(s.start)} ${at(s.end)}`).join(", ")})`;
+    const at = (time) => `${(((time - span.begin) / (span.end - span.begin)) * 100).toFixed(3)}%`;
+    const parts = motion.segments.map((s) => `${segmentColor(s)} ${at(s.start)} ${at(s.end)}`);
+    return `linear-gradient(to right, ${[...parts, `transparent ${at(motion.end)}`].join(", ")})`;
 }

@@ -1,25 +1,28 @@
 //! All that the page is told, as one JSON value.
 
 use crate::ViewError;
-use crate::extras::{CheckRow, Extras, GraphEdge, GraphPicture, ReplayTrack, StateCurves};
+use crate::extras::{CheckRow, Extras, GraphEdge, GraphPicture, GripCurves, ReplayTrack, Shown, StateCurves};
+use crate::hand::{PoseData, pose};
 use crate::motion::{MotionData, StatesData, check_state, motion};
-use crate::number::{micro, nano};
+use crate::number::{micro, milli, nano};
 use crate::scene::{SceneData, scene};
-use regrasp_api::Slot;
+use regrasp_api::{FingerIndex, GoalDescription, Hand, Problem, Slot};
 use regrasp_plan::{ConeClaim, Plan, PlanCertificate, StoppedBy};
 use regrasp_world::ChainHand;
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 #[derive(Serialize)]
-pub(crate) struct PageData<'a> {
+struct PageData<'a> {
     name: &'a str,
     seed: u64,
     versions: &'a BTreeMap<String, String>,
     plugins: BTreeMap<&'static str, &'a str>,
     cone: Option<ConeClaim>,
     contact_model: &'a str,
-    goals: usize,
+    /// The object's poses at the goals.
+    goals: Vec<PoseData>,
     goals_reached: &'a [usize],
     stopped_by: Option<StoppedBy>,
     certificate: Option<&'a PlanCertificate>,
@@ -27,6 +30,7 @@ pub(crate) struct PageData<'a> {
     scene: SceneData,
     motion: MotionData,
     curves: Option<CurvesData<'a>>,
+    grip: Option<GripData<'a>>,
     verdict: &'a [CheckRow],
     graph: Option<GraphData<'a>>,
     replay: Option<ReplayData<'a>>,
@@ -41,6 +45,16 @@ struct CurvesData<'a> {
     pairs: Vec<&'a str>,
     /// For each state the index of its pair.
     pair: Vec<usize>,
+    least_clearance: f64,
+}
+
+#[derive(Serialize)]
+struct GripData<'a> {
+    /// For each state and finger: empty, or a force (N, in O).
+    forces: Vec<Vec<Vec<f64>>>,
+    /// As many numbers a state as the hand has joints: parts of the limits.
+    efforts: Vec<f64>,
+    origin: &'a str,
 }
 
 #[derive(Serialize)]
@@ -58,7 +72,40 @@ struct ReplayData<'a> {
     poses: Vec<f64>,
 }
 
-pub(crate) fn data<'a>(plan: &'a Plan, extras: &'a Extras) -> Result<PageData<'a>, ViewError> {
+/// The first plan's data, and those of the others.
+#[derive(Serialize)]
+pub(crate) struct AllData<'a> {
+    label: &'a str,
+    #[serde(flatten)]
+    first: PageData<'a>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    beside: Vec<Value>,
+}
+
+pub(crate) fn all<'a>(first: Shown<'a>, others: &[Shown<'_>]) -> Result<AllData<'a>, ViewError> {
+    let data_of = |shown: &Shown<'_>| data(shown.plan, shown.extras).map(written);
+    let known = if others.is_empty() { Value::Null } else { data_of(&first)? };
+    let mut beside = Vec::with_capacity(others.len());
+    for other in others {
+        let named = |error| ViewError::Beside { label: other.label.into(), error: Box::new(error) };
+        let mut value = data_of(other).map_err(named)?;
+        value["label"] = other.label.into();
+        // What is the first plan's too is not written again.
+        for shared in ["hand", "object", "obstacles"] {
+            if value[shared] == known[shared] {
+                value[shared].take();
+            }
+        }
+        beside.push(value);
+    }
+    Ok(AllData { label: first.label, first: data(first.plan, first.extras)?, beside })
+}
+
+fn written(data: PageData<'_>) -> Value {
+    serde_json::to_value(data).expect("numbers and names can always be written")
+}
+
+fn data<'a>(plan: &'a Plan, extras: &'a Extras) -> Result<PageData<'a>, ViewError> {
     let problem = &plan.scenario.problem;
     let hand = ChainHand::new(problem.hand.clone())?;
     let states = plan.segments.iter().map(|segment| segment.states.len()).sum();
@@ -70,17 +117,23 @@ pub(crate) fn data<'a>(plan: &'a Plan, extras: &'a Extras) -> Result<PageData<'a
         plugins: plan.scenario.plugins.iter().map(plugin).collect(),
         cone: plan.claims.contact.cone,
         contact_model: &plan.claims.contact.model,
-        goals: problem.goal.len(),
+        goals: goals(problem)?,
         goals_reached: &plan.goals_reached,
         stopped_by: plan.stopped_by,
         certificate: plan.certificate.as_ref(),
         scene: scene(problem)?,
         motion: motion(&plan.segments, &hand)?,
         curves: extras.curves.as_ref().map(|curves| curves_data(curves, states)).transpose()?,
+        grip: extras.grip.as_ref().map(|grip| grip_data(grip, states, &hand)).transpose()?,
         verdict: &extras.checks,
         graph: extras.graph.as_ref().map(|graph| graph_data(graph, &hand)).transpose()?,
         replay: extras.replay.as_ref().map(replay_data).transpose()?,
     })
+}
+
+fn goals(problem: &Problem) -> Result<Vec<PoseData>, ViewError> {
+    let goal = |(g, goal): (usize, &GoalDescription)| pose(&goal.pose, &format!("goal[{g}].pose"));
+    problem.goal.iter().enumerate().map(goal).collect()
 }
 
 fn foreign<T>(what: &str) -> Result<T, ViewError> {
@@ -102,6 +155,24 @@ fn curves_data(curves: &StateCurves, states: usize) -> Result<CurvesData<'_>, Vi
         clearance: curves.clearance.iter().map(|x| x.map(nano)).collect(),
         pair: curves.clearance_pair.iter().map(index).collect(),
         pairs,
+        least_clearance: curves.least_clearance,
+    })
+}
+
+fn grip_data<'a>(grip: &'a GripCurves, states: usize, hand: &ChainHand) -> Result<GripData<'a>, ViewError> {
+    let fingers = hand.finger_count();
+    let joints: usize = (0..fingers).map(|f| hand.finger(FingerIndex(f as u8)).joints.len()).sum();
+    let fits = [grip.forces.len(), grip.efforts.len()] == [states; 2]
+        && grip.forces.iter().all(|forces| forces.len() == fingers)
+        && grip.efforts.iter().all(|efforts| efforts.len() == joints);
+    if !fits {
+        return foreign("the forces are not one for each state and finger of the plan");
+    }
+    let force = |force: &Option<[f64; 3]>| force.iter().flatten().map(|&x| milli(x)).collect();
+    Ok(GripData {
+        forces: grip.forces.iter().map(|forces| forces.iter().map(force).collect()).collect(),
+        efforts: grip.efforts.iter().flatten().map(|&x| milli(x)).collect(),
+        origin: &grip.origin,
     })
 }
 

@@ -32,6 +32,14 @@ pub enum ViewError {
         /// What is wrong with it.
         reason: &'static str,
     },
+    /// One of the plans beside the first.
+    #[error("`{label}` cannot be shown: {error}")]
+    Beside {
+        /// What tells it from the others.
+        label: String,
+        /// What is wrong with it.
+        error: Box<ViewError>,
+    },
     /// What is to be shown beside the plan does not belong to it.
     #[error("{0}")]
     Foreign(String),

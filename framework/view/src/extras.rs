@@ -1,12 +1,27 @@
 //! What can be shown beside the plan itself; other crates compute it.
 
+use regrasp_api::BodyPair;
+use regrasp_plan::Plan;
 use serde::Serialize;
+
+/// A plan on a page, and what is shown with it.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown<'a> {
+    /// The plan.
+    pub plan: &'a Plan,
+    /// What else is known of it.
+    pub extras: &'a Extras,
+    /// What tells it from the page's other plans, such as its file's name.
+    pub label: &'a str,
+}
 
 /// What is known of a plan beyond its file. Everything is optional: what is absent is not shown.
 #[derive(Clone, Debug, Default)]
 pub struct Extras {
     /// Margin and clearance over time.
     pub curves: Option<StateCurves>,
+    /// The forces that hold the object, over time.
+    pub grip: Option<GripCurves>,
     /// The verifier's checks.
     pub checks: Vec<CheckRow>,
     /// The manipulation graph.
@@ -27,6 +42,19 @@ pub struct StateCurves {
     pub clearance: Vec<Option<f64>>,
     /// The two bodies, in words; empty where there are none.
     pub clearance_pair: Vec<String>,
+    /// The clearance that the plan must keep (m).
+    pub least_clearance: f64,
+}
+
+/// How the fingers hold the object at each state of the plan, segment after segment.
+#[derive(Clone, Debug, Default)]
+pub struct GripCurves {
+    /// For each finger the force that it exerts on the object, in O (N); `None` where it does not hold.
+    pub forces: Vec<Vec<Option<[f64; 3]>>>,
+    /// For each joint, finger after finger, the effort that this takes, in parts of its limit.
+    pub efforts: Vec<Vec<f64>>,
+    /// Where the forces come from, in a few words.
+    pub origin: String,
 }
 
 /// One check of the verifier.
@@ -48,6 +76,12 @@ pub struct CheckRow {
     pub place: String,
     /// The time of that place (s).
     pub time: Option<f64>,
+    /// The finger that it is about, counted from 0.
+    pub finger: Option<usize>,
+    /// The joint of that finger, counted from 0 at the base.
+    pub joint: Option<usize>,
+    /// The two bodies that it is about.
+    pub pair: Option<BodyPair>,
 }
 
 /// The manipulation graph at the end of a run.

@@ -4,7 +4,8 @@ use crate::ViewError;
 use crate::mesh::MeshData;
 use crate::number::{micro, nano};
 use regrasp_api::{
-    FingerDescription, HandDescription, JointKind, PlacedShape, PoseDescription, Problem, Shape,
+    FingerDescription, HandDescription, JointDescription, JointKind, PlacedShape, PoseDescription, Problem,
+    Shape,
 };
 use serde::Serialize;
 
@@ -25,6 +26,8 @@ struct FingerData {
     base: PoseData,
     joints: Vec<JointData>,
     tip: [f64; 3],
+    /// The joints' positions at rest.
+    rest: Vec<f64>,
 }
 
 #[derive(Serialize)]
@@ -34,7 +37,23 @@ struct JointData {
     origin: PoseData,
     /// Of length 1.
     axis: [f64; 3],
+    /// Lowest and highest position (rad; m where it slides).
+    range: [f64; 2],
+    /// Largest speed (rad/s; m/s).
+    velocity: f64,
+    /// Largest effort (N·m; N).
+    effort: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mimic: Option<MimicData>,
     shapes: Vec<ShapeData>,
+}
+
+/// q = `multiplier` · q of the finger's joint number `joint` + `offset`.
+#[derive(Serialize)]
+struct MimicData {
+    joint: usize,
+    multiplier: f64,
+    offset: f64,
 }
 
 #[derive(Serialize)]
@@ -104,6 +123,10 @@ fn finger(finger: &FingerDescription, key: &str) -> Result<FingerData, ViewError
             slides: joint.kind == JointKind::Prismatic,
             origin: pose(&joint.origin, &format!("{key}.origin"))?,
             axis: joint.axis.map(|x| x / length),
+            range: [joint.lower, joint.upper],
+            velocity: joint.velocity,
+            effort: joint.effort,
+            mimic: mimic(joint, &finger.joint),
             shapes: shapes(&joint.link, &format!("{key}.link"))?,
         });
     }
@@ -112,7 +135,14 @@ fn finger(finger: &FingerDescription, key: &str) -> Result<FingerData, ViewError
         base: pose(&finger.base, &format!("{key}.base"))?,
         joints,
         tip: finger.tip,
+        rest: finger.rest.clone(),
     })
+}
+
+fn mimic(joint: &JointDescription, among: &[JointDescription]) -> Option<MimicData> {
+    let mimic = joint.mimic.as_ref()?;
+    let driver = among.iter().position(|other| other.name == mimic.joint)?;
+    Some(MimicData { joint: driver, multiplier: mimic.multiplier, offset: mimic.offset })
 }
 
 pub(crate) fn obstacles(problem: &Problem) -> Result<Vec<ObstacleData>, ViewError> {

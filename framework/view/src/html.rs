@@ -1,9 +1,21 @@
 //! The page itself: template, style, scripts and data put together.
 
-use crate::assets::{LOADER, OWN, PAGE, STYLE, THREE, THREE_LICENSE};
-use crate::data::data;
-use crate::{Extras, ViewError};
+use crate::assets::{
+    HAND_PARTS, LOADER, MODEL, MODEL_STYLE, Modules, OBJECT_PARTS, PAGE, PLAN, PLAN_PARTS, PLAN_STYLE,
+    SHARED, STYLE, THREE, THREE_LICENSE,
+};
+use crate::data::all;
+use crate::{Extras, Shown, ViewError};
 use regrasp_plan::Plan;
+use serde::Serialize;
+
+/// What a page shows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
+    Plan,
+    Hand,
+    Object,
+}
 
 /// The page that shows `plan` with `extras`: one HTML file that needs nothing else.
 ///
@@ -11,17 +23,33 @@ use regrasp_plan::Plan;
 /// a kilobyte for each state, and meshes up to 1.5 MB: what has more facets is drawn with fewer, and the page
 /// says so. A few milliseconds for each thousand states.
 pub fn page(plan: &Plan, extras: &Extras) -> Result<String, ViewError> {
-    let data = serde_json::to_string(&data(plan, extras)?).expect("numbers and names can always be written");
+    page_beside(Shown { plan, extras, label: &plan.scenario.name }, &[])
+}
+
+/// The same with other plans beside the first, in step with it. What they share with it is written once.
+pub fn page_beside(first: Shown<'_>, others: &[Shown<'_>]) -> Result<String, ViewError> {
+    Ok(assembled(Kind::Plan, &first.plan.scenario.name, &all(first, others)?))
+}
+
+/// The page of a kind around its data.
+pub(crate) fn assembled(kind: Kind, title: &str, data: &impl Serialize) -> String {
+    let data = serde_json::to_string(data).expect("numbers and names can always be written");
+    let (body, style, parts) = match kind {
+        Kind::Plan => (PLAN, PLAN_STYLE, PLAN_PARTS),
+        Kind::Hand => (MODEL, MODEL_STYLE, HAND_PARTS),
+        Kind::Object => (MODEL, MODEL_STYLE, OBJECT_PARTS),
+    };
     let fill = |name: &str| match name {
-        "TITLE" => escape(&plan.scenario.name),
+        "TITLE" => escape(title),
         "LICENSE" => THREE_LICENSE.replace("--", "- -"),
-        "STYLE" => STYLE.into(),
+        "STYLE" => format!("{STYLE}{style}"),
+        "BODY" => body.into(),
         "DATA" => json_in_script(&data),
-        "MODULES" => modules(),
+        "MODULES" => modules(parts),
         "LOADER" => LOADER.into(),
         other => unreachable!("the template has no {other}"),
     };
-    Ok(filled(PAGE, fill))
+    filled(PAGE, fill)
 }
 
 /// The template with every `{{NAME}}` replaced; what is put in is not looked at again.
@@ -37,8 +65,8 @@ fn filled(template: &str, fill: impl Fn(&str) -> String) -> String {
 }
 
 /// The modules as inert scripts, which the loader brings to life.
-fn modules() -> String {
-    let all = THREE.into_iter().chain(OWN);
+fn modules(parts: Modules) -> String {
+    let all = THREE.iter().chain(SHARED).chain(parts);
     all.map(|(name, text)| {
         format!("<script type=\"text/plain\" data-module=\"{name}\">\n{text}\n</script>\n")
     })

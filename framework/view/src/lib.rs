@@ -1,5 +1,5 @@
-//! A plan as one HTML page that plays it: hand, object and obstacles in 3-D, contacts, friction cones, the
-//! margins over time.
+//! A plan as one HTML page that plays it: hand, object and obstacles in 3-D, contacts, forces, the margins
+//! over time; several plans in step; hands and objects as they were understood.
 //!
 //! [`page`] turns a plan file's content, and what else is known of it ([`Extras`]), into the text of the
 //! page. The page stands alone: data, style, code and three.js (`third_party/three`) are inside, and nothing
@@ -12,13 +12,19 @@ mod data;
 mod error;
 mod extras;
 mod hand;
+mod hand_page;
 mod html;
 mod mesh;
 mod motion;
 mod number;
+mod object_page;
 pub mod picture;
 mod scene;
 
 pub use error::ViewError;
-pub use extras::{CheckRow, Extras, GraphEdge, GraphNode, GraphPicture, ReplayTrack, StateCurves};
-pub use html::page;
+pub use extras::{
+    CheckRow, Extras, GraphEdge, GraphNode, GraphPicture, GripCurves, ReplayTrack, Shown, StateCurves,
+};
+pub use hand_page::{BallPlace, HandView, hand_page};
+pub use html::{page, page_beside};
+pub use object_page::{ObjectView, object_page};

@@ -2,7 +2,7 @@
 
 use crate::ViewError;
 use crate::number::nano;
-use regrasp_api::{Mesh, MeshSource};
+use regrasp_api::{Mesh, MeshSource, Vec3};
 use regrasp_world::WorldError;
 use serde::Serialize;
 
@@ -26,6 +26,11 @@ impl MeshData {
     pub(crate) fn new(mesh: &Mesh) -> Self {
         let vertices = mesh.vertices().iter().flat_map(|v| [nano(v.x), nano(v.y), nano(v.z)]).collect();
         Self { vertices, facets: mesh.facets().concat(), count: mesh.facets().len() }
+    }
+
+    /// The vertices that are drawn.
+    pub(crate) fn points(&self) -> Vec<Vec3> {
+        self.vertices.chunks_exact(3).map(Vec3::from_column_slice).collect()
     }
 
     pub(crate) fn of_source(source: &MeshSource, key: &str) -> Result<Self, ViewError> {

@@ -37,6 +37,9 @@ pub(crate) struct StatesData {
     joints: Vec<f64>,
     /// For each state and finger: empty, or point_O, normal_O, point_F.
     contacts: Vec<Vec<Vec<f64>>>,
+    /// As `joints` (rad/s; m/s); empty where a state has none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    velocities: Vec<f64>,
 }
 
 /// Where the fingertips' centres are at a state (m, in H).
@@ -52,6 +55,14 @@ impl StatesData {
         self.object.extend(state.object.position.iter().chain(&state.object.orientation).map(|&x| nano(x)));
         self.joints.extend(state.joints.iter().flatten().map(|&q| nano(q)));
         self.contacts.push(state.contacts.iter().map(|c| contact(c.as_ref())).collect());
+        self.velocities.extend(state.velocities.iter().flatten().flatten().map(|&v| micro(v)));
+    }
+
+    /// Forgets velocities that only some of the states have.
+    fn settle(&mut self) {
+        if self.velocities.len() != self.joints.len() {
+            self.velocities.clear();
+        }
     }
 }
 
@@ -70,6 +81,7 @@ pub(crate) fn motion(segments: &[SegmentRecord], hand: &ChainHand) -> Result<Mot
             states.push(state);
         }
     }
+    states.settle();
     Ok(MotionData { checks: tip_checks(segments, hand), segments: list, states })
 }
 
@@ -95,12 +107,17 @@ pub(crate) fn check_state(state: &StateRecord, hand: &ChainHand) -> Result<(), &
     if state.joints.len() != fingers || (0..fingers).any(|f| state.joints[f].len() != count(f)) {
         return Err("not one position for each joint of the hand");
     }
+    if let Some(velocities) = &state.velocities
+        && !velocities.iter().map(Vec::len).eq((0..fingers).map(count))
+    {
+        return Err("not one velocity for each joint of the hand");
+    }
     if state.contacts.len() != fingers {
         return Err("not one contact (or null) for each finger");
     }
     let contacts = state.contacts.iter().flatten().flat_map(|c| [c.point_O, c.normal_O, c.point_F]).flatten();
     let pose = state.object.position.into_iter().chain(state.object.orientation);
-    let joints = state.joints.iter().flatten().copied();
+    let joints = state.joints.iter().chain(state.velocities.iter().flatten()).flatten().copied();
     if !contacts.chain(pose).chain(joints).chain([state.time]).all(|x| x.abs() < 1e6) {
         return Err("a number that is not finite, or far beyond any hand");
     }

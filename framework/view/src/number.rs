@@ -5,6 +5,11 @@ pub(crate) fn nano(x: f64) -> f64 {
     round(x, 1e9)
 }
 
+/// Rounded to 1e-3: forces in newtons, parts of limits.
+pub(crate) fn milli(x: f64) -> f64 {
+    round(x, 1e3)
+}
+
 /// Rounded to 1e-6: unit normals, times, margins.
 pub(crate) fn micro(x: f64) -> f64 {
     round(x, 1e6)

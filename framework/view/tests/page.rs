@@ -1,65 +1,13 @@
 //! The page of a small plan made by hand: what it holds, what it refuses, how large it is.
 
-use regrasp_plan::{Plan, StateRecord};
-use regrasp_view::{Extras, GraphEdge, GraphNode, GraphPicture, ReplayTrack, StateCurves, ViewError, page};
+mod small;
+
+use regrasp_plan::StateRecord;
+use regrasp_view::{
+    Extras, GraphEdge, GraphNode, GraphPicture, GripCurves, ReplayTrack, StateCurves, ViewError, page,
+};
 use serde_json::{Value, json};
-
-/// One finger with one joint and a ball, over one step.
-fn plan() -> Plan {
-    let state = |time: f64, q: f64| {
-        json!({
-            "time": time,
-            "object": {"position": [0.0, 0.0, 0.08], "orientation": [1.0, 0.0, 0.0, 0.0]},
-            "joints": [[q, 0.1, 0.2]],
-            "contacts": [{"point_O": [0.03, 0.0, 0.0], "normal_O": [1.0, 0.0, 0.0], "point_F": [-0.01, 0.0, 0.0]}],
-        })
-    };
-    let joint = |name: &str, axis: [f64; 3]| json!({"name": name, "origin": {"position": [0.0, 0.0, 0.05]}, "axis": axis, "lower": -1.0, "upper": 1.0});
-    let capsule =
-        json!({"shape": {"kind": "capsule", "from": [0, 0, 0], "to": [0, 0, 0.05], "radius": 0.008}});
-    let mut last = joint("c", [0.0, 1.0, 0.0]);
-    last["link"] = json!([capsule]);
-    let plan = json!({
-        "format": "regrasp-plan",
-        "version": 1,
-        "scenario": {
-            "name": "<i>small</i> & \"quoted\"",
-            "problem": {
-                "hand": {
-                    "name": "one",
-                    "fingertip_radius": 0.01,
-                    "palm": [{"shape": {"kind": "box", "size": [0.1, 0.1, 0.01]}}],
-                    "finger": [{"name": "</script>", "joint": [joint("a", [2.0, 0.0, 0.0]), joint("b", [0.0, 1.0, 0.0]), last], "tip": [0.0, 0.0, 0.05], "rest": [0.0, 0.1, 0.2]}],
-                },
-                "object": {"shape": {"kind": "sphere", "radius": 0.03, "facets": 80}, "friction": 0.8},
-                "obstacle": [{"name": "floor", "shape": {"kind": "half-space", "normal": [0, 0, 1], "offset": -0.1}}],
-                "start": {"pose": {"position": [0.0, 0.0, 0.08]}},
-                "goal": [],
-            },
-            "plugins": {},
-        },
-        "seed": 7,
-        "versions": {},
-        "claims": {
-            "contact": {"model": "contact-model/pcwf", "cone": {"mu": 0.8, "gamma": 0.0}},
-            "criterion": "closure",
-            "transfer_law": "rolling",
-            "margin": {"center_O": [0.0, 0.0, 0.0], "length": 0.03},
-        },
-        "goals_reached": [],
-        "stopped_by": null,
-        "statistics": regrasp_plan::Statistics::default(),
-        "certificate": null,
-        "segments": [{"kind": "transfer", "states": [state(0.0, 0.0), state(0.5, 0.3)]}],
-    });
-    serde_json::from_value(plan).unwrap()
-}
-
-/// What the page's scripts are told.
-fn data(page: &str) -> Value {
-    let (_, rest) = page.split_once("id=\"data\">").unwrap();
-    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
-}
+use small::{data, plan};
 
 #[test]
 fn the_page_holds_the_plan_and_nothing_leaves_its_place() {
@@ -105,6 +53,9 @@ fn what_does_not_fit_the_plan_is_refused() {
     let refused = |extras: Extras| page(&plan(), &extras).unwrap_err().to_string();
     let curves = StateCurves { margin: vec![None], ..StateCurves::default() };
     assert!(refused(Extras { curves: Some(curves), ..Extras::default() }).contains("curves"));
+    let grip =
+        GripCurves { forces: vec![vec![]; 2], efforts: vec![vec![0.0; 3]; 2], ..GripCurves::default() };
+    assert!(refused(Extras { grip: Some(grip), ..Extras::default() }).contains("forces"));
     let replay = ReplayTrack { times: vec![1.0, 0.0], poses: vec![[0.0; 7]; 2], ..ReplayTrack::default() };
     assert!(refused(Extras { replay: Some(replay), ..Extras::default() }).contains("replay"));
     let node = GraphNode { state: plan().segments[0].states[0].clone(), component: 0, end: None };
@@ -124,10 +75,41 @@ fn states_that_cannot_be_shown_are_named() {
         }
     };
     assert!(refused(|state| state.joints[0].clear()).contains("joint"));
+    assert!(refused(|state| state.velocities = Some(vec![vec![0.0; 2]])).contains("velocity"));
+    assert!(refused(|state| state.velocities = Some(vec![vec![f64::NAN; 3]])).contains("finite"));
     assert!(refused(|state| state.contacts.clear()).contains("contact"));
     assert!(refused(|state| state.object.position[0] = f64::NAN).contains("finite"));
     assert!(refused(|state| state.object.orientation = [0.0; 4]).contains("zero"));
     assert!(refused(|state| state.time = -1.0).contains("earlier"));
+}
+
+#[test]
+fn forces_efforts_and_velocities_come_with_their_limits() {
+    let mut plan = plan();
+    let velocity = |x: f64| Some(vec![vec![x, 2.0 * x, -x]]);
+    plan.segments[0].states[0].velocities = velocity(0.0);
+    plan.segments[0].states[1].velocities = velocity(0.1234567);
+    let grip = GripCurves {
+        forces: vec![vec![Some([-1.00049, 0.0, 0.25])], vec![None]],
+        efforts: vec![vec![0.5, -0.1234, 0.0], vec![0.0; 3]],
+        origin: "chosen".into(),
+    };
+    let data = data(&page(&plan, &Extras { grip: Some(grip), ..Extras::default() }).unwrap());
+    assert_eq!(data["grip"]["forces"], json!([[[-1.0, 0.0, 0.25]], [[]]]), "in millinewtons");
+    assert_eq!(data["grip"]["efforts"], json!([0.5, -0.123, 0.0, 0.0, 0.0, 0.0]));
+    assert_eq!(data["motion"]["states"]["velocities"], json!([0.0, 0.0, 0.0, 0.123457, 0.246913, -0.123457]));
+    let joint = &data["hand"]["fingers"][0]["joints"][0];
+    assert_eq!(joint["range"], json!([-1.0, 1.0]));
+    assert!(joint["velocity"].as_f64().unwrap() > 0.0 && joint["effort"].as_f64().unwrap() > 0.0);
+    assert_eq!(data["goals"], json!([]), "the poses of the goals");
+}
+
+#[test]
+fn velocities_that_some_states_lack_are_left_out() {
+    let mut plan = plan();
+    plan.segments[0].states[1].velocities = Some(vec![vec![0.1, 0.2, 0.3]]);
+    let data = data(&page(&plan, &Extras::default()).unwrap());
+    assert_eq!(data["motion"]["states"].get("velocities"), None);
 }
 
 #[test]

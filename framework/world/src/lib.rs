@@ -16,7 +16,7 @@ pub use clearance::SceneClearance;
 pub use error::WorldError;
 pub use hand::{ChainHand, HandError, LinkFrame, LinkFrames};
 pub use hull::{coarse_hull, convex_hull, convex_pieces};
-pub use object::{Measures, load_object, measure, object_of_mesh, primitive_mesh};
+pub use object::{Measures, load_object, measure, object_of_mesh, primitive_mesh, signed_distances};
 pub use scene::{World, check_limits, check_problem, check_units};
 pub use twin::{automatic_twin, roughness, twin_within};
 pub use workspace::{FingerWorkspace, ObjectPlace, finger_workspace, object_places};

@@ -1,8 +1,10 @@
 //! The object: from its description to mesh, mass and friction.
 
+mod distance;
 mod measure;
 mod pattern;
 
+pub use distance::signed_distances;
 pub use measure::{Measures, measure};
 
 use crate::error::{WorldError, check_range};
