@@ -11,6 +11,7 @@ mod grasps;
 mod hold;
 mod json_errors;
 mod outputs;
+mod roadmap;
 mod rough;
 mod search;
 mod wording;
