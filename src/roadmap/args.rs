@@ -12,8 +12,8 @@ const NODES: usize = 2000;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 The graph does not depend on start and goal: its nodes are grasps at poses drawn evenly over all \
-orientations and over the scenario's `workspace` (where it has none, a box 15 mm about its start and goals); its edges \
-are those alone for which transfers and regrasps were found. `regrasp plan --roadmap FILE` plans through \
+orientations and over the scenario's `workspace` (where it has none, a box 15 mm about its start and \
+goals); its edges are those alone for which transfers and regrasps were found. `regrasp plan --roadmap FILE` plans through \
 it.\n\n\
 Where the file is there already it grows on. It is written anew every ten seconds: after Ctrl-C or a \
 crash the same command goes on from there. The same seed gives the same roadmap on any number of threads, \

@@ -9,8 +9,8 @@ use crate::solve::{finger_choices, poses, with_task};
 use regrasp_api::{CallError, Configuration, Task};
 use regrasp_plan::{Motion, Segment, SegmentKind};
 
-/// Adds the grasps in which a motion begins, rolls on, and ends to a roadmap, those that may be nodes, each joined to the
-/// one before and to nodes near it; how many were added.
+/// Adds to a roadmap the grasps in which a motion begins, rolls on, and ends, those that may be nodes, each
+/// joined to the one before and to nodes near it; how many were added.
 ///
 /// A roadmap that has learnt is no longer the one that its seed and its number of nodes give.
 pub fn learn(request: &Request<'_>, roadmap: &mut Roadmap, motion: &Motion) -> Result<usize, PlanError> {

@@ -20,8 +20,11 @@ use regrasp_api::{
 use regrasp_plan::Segment;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Nodes that each end may be joined to.
-const NEAR: usize = 24;
+/// Nodes that each end may be joined to. Our choice: with more of them ways have fewer regrasps, and more of
+/// the rolls fail that are tried.
+const NEAR: usize = 48;
+/// How many times as much as an edge of its length the way to an end costs: it may fail. Our choice.
+const RISK: f32 = 1.6;
 /// Edges and ends that may fail before the query is given up.
 const FAILURES: usize = 40;
 /// How much of the way to an end one must be able to look along for a roll there to be tried.
@@ -147,7 +150,7 @@ impl Query<'_> {
         let poses = &self.graph.roadmap.nodes.poses()[..self.graph.node_count()];
         let regrasps = if matches!(self.ends[side], Place::Grasp(_)) { REGRASPS } else { 0.0 };
         let near = nearest(poses, &pose, self.graph.turn_length, NEAR);
-        let access = |(node, length)| Access { node, cost: regrasps + self.graph.cost_of(length) };
+        let access = |(node, length)| Access { node, cost: regrasps + RISK * self.graph.cost_of(length) };
         near.into_iter().map(access).collect()
     }
 

@@ -40,7 +40,8 @@ impl GoalList {
         goal.pose.pose().map_err(named).map(|_| goal)
     }
 
-    /// The refusal of a row, counted from 0, for something that was found wrong later, its key within the row.
+    /// The refusal of a row, counted from 0, for something that was found wrong later; its key is that within
+    /// the row.
     pub fn refuse(&self, row: usize, error: &impl Refuse) -> ScenarioError {
         self.document.refused(&error.refusal().below(&format!("goal[{row}]")))
     }
