@@ -57,7 +57,7 @@ pose = { position = [0.0, 0.0, 0.085], axis = [0.0, 0.0, 1.0], angle_deg = 40.0 
 [[goal]]
 pose = { position = [0.0, 0.0, 0.085], axis = [0.0, 0.0, 1.0] }
 [[goal]]
-pose = { position = [0.0, 0.0, -0.5] }
+pose = { position = [0.0, 0.0, 0.0] }
 [[goal]]
 pose = { position = [0.0, 0.0, 0.085], axis = [1.0, 0.0, 0.0], angle_deg = 60.0 }
 ";
