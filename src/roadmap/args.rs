@@ -13,8 +13,8 @@ const NODES: usize = 2000;
 #[command(after_help = "\
 The graph does not depend on start and goal: its nodes are grasps at poses drawn evenly over all \
 orientations and over the scenario's `workspace` (where it has none, a box 15 mm about its start and \
-goals); its edges are those alone for which transfers and regrasps were found. `regrasp plan --roadmap FILE` plans through \
-it.\n\n\
+goals); its edges are those alone for which transfers and regrasps were found. `regrasp plan --roadmap \
+FILE` plans through it.\n\n\
 Where the file is there already it grows on. It is written anew every ten seconds: after Ctrl-C or a \
 crash the same command goes on from there. The same seed gives the same roadmap on any number of threads, \
 in however many pieces it was grown, and fewer nodes are the first of more. With `--force` it begins \
@@ -29,15 +29,16 @@ pub struct RoadmapArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Grow it to this many nodes; 2000 where no seconds are given.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<usize, 1, 100_000_000>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true,
+          value_parser = whole::<usize, 1, 100_000_000>)]
     pub nodes: Option<usize>,
     /// Grow it for this many seconds.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     pub seconds: Option<f64>,
     /// Then plan between this many random starts and goals, 100 without a number, and tell how many the
     /// roadmap solves, and how many it solved with fewer nodes.
-    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "100", allow_negative_numbers = true,
-          value_parser = whole::<usize, 1, 1_000_000>)]
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "100",
+          allow_negative_numbers = true, value_parser = whole::<usize, 1, 1_000_000>)]
     pub report: Option<usize>,
     /// Seed of all random choices.
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true,
