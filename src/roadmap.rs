@@ -42,8 +42,8 @@ pub fn run(args: &RoadmapArgs) -> Result<(), Failure> {
     let before = roadmap.node_count();
     let job = Job { args, setup: &setup, identity: &identity, watch: &watch };
     let (ended, seconds) = job.grow(&mut roadmap)?;
-    let interrupted = ended == Grown::Interrupted && watch.cause() == StoppedBy::Interrupt;
-    let standings = if interrupted { Vec::new() } else { job.judge(&roadmap)? };
+    let is_interrupted = || watch.interrupted() && watch.cause() == StoppedBy::Interrupt;
+    let standings = if is_interrupted() { Vec::new() } else { job.judge(&roadmap)? };
     let graph = RoadmapGraph::new(&roadmap, roadmap.node_count(), scenario.object.mesh.radius());
     let report = Report {
         args,
@@ -58,7 +58,7 @@ pub fn run(args: &RoadmapArgs) -> Result<(), Failure> {
     report.tell()?;
     let kept = format!("{} has {} nodes", args.output.display(), roadmap.node_count());
     match ended {
-        Grown::Interrupted if interrupted => {
+        _ if is_interrupted() => {
             Err(Failure::interrupted(format!("interrupted: {kept}; the same command goes on from there")))
         }
         Grown::Barren => Err(Failure::no_plan(format!(
@@ -142,8 +142,11 @@ impl Job<'_> {
             if watch.interrupted() {
                 break;
             }
-            let standing = judge(self.setup, (roadmap, nodes), &pairs, &options);
-            standings.push(standing.map_err(Failure::refused)?);
+            let standing = judge(self.setup, (roadmap, nodes), &pairs, &options).map_err(Failure::refused)?;
+            // A row that was cut short would be a share of other pairs.
+            if standing.attempts.len() == pairs.len() {
+                standings.push(standing);
+            }
         }
         Ok(standings)
     }
