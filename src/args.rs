@@ -30,6 +30,7 @@ pub enum Command {
     View(crate::view::ViewArgs),
     Export(crate::export::ExportArgs),
     Grasps(crate::grasps::GraspsArgs),
+    Roadmap(crate::roadmap::RoadmapArgs),
     Replay(crate::replay::ReplayArgs),
     Hand(crate::hand::HandArgs),
     Object(crate::object::ObjectArgs),
@@ -58,6 +59,7 @@ impl Command {
             Self::Verify(args) => args.json,
             Self::Compare(args) => args.json,
             Self::Grasps(args) => args.json,
+            Self::Roadmap(args) => args.json,
             Self::Replay(args) => args.json,
             Self::Hand(args) => args.json,
             Self::Plugins(args) => args.json,
@@ -79,7 +81,8 @@ verifies goes to `plan.partial.json`. A plan that does not verify is never writt
 but to `plan.rejected.json`.\n\n\
 Examples:\n  regrasp plan sphere\n  regrasp plan my-problem.toml --seed 7 -o plan.json\n  \
 regrasp plan cubic --use stability-test=socp --set graph-strategy.end=0.8 --rejections\n  \
-regrasp plan cubic --improve 20x -o plan.json")]
+regrasp plan cubic --improve 20x -o plan.json\n  \
+regrasp plan cubic --roadmap cube.roadmap --goals goals.toml -o plans")]
 pub struct PlanArgs {
     /// A scenario file, or the name of a built-in scenario.
     pub scenario: String,
@@ -118,6 +121,19 @@ pub struct PlanArgs {
     /// better.
     #[arg(long, value_name = "WHAT", requires = "improve", value_parser = objective)]
     pub optimise: Option<Objective>,
+    /// Plan through this roadmap, which `regrasp roadmap` grew for the same hand, object and settings; where
+    /// it knows no way, plan as without it, and say so.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["audit", "audit_save", "improve"])]
+    pub roadmap: Option<PathBuf>,
+    /// Add the grasps of plans that were found without the roadmap to its file.
+    #[arg(long, requires = "roadmap")]
+    pub roadmap_add: bool,
+    /// Plan to each goal of this list instead of the scenario's, each from the scenario's start: a TOML file
+    /// of `[[goal]]` tables as scenarios have them. What becomes of each is a line, with `--json` an object;
+    /// a wrong row is told with its number, and the rest is done. With `-o` the plans go to that folder.
+    #[arg(long, value_name = "FILE")]
+    #[arg(conflicts_with_all = ["audit", "audit_save", "improve", "grasps", "view", "view_graph"])]
+    pub goals: Option<PathBuf>,
     /// Write the plan to this file; `-` is standard output, and the report then goes to standard error.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

@@ -50,6 +50,7 @@ pub use regrasp_host as host;
 pub use regrasp_physics as physics;
 pub use regrasp_plan as plan;
 pub use regrasp_planner as planner;
+pub use regrasp_roadmap as roadmap;
 pub use regrasp_run as run;
 pub use regrasp_study as study;
 pub use regrasp_verify as verify;

@@ -9,6 +9,7 @@ mod completions;
 mod doctor;
 mod export;
 mod failure;
+mod goals;
 mod grasps;
 mod hand;
 mod holds;
@@ -30,6 +31,7 @@ mod quantity;
 mod reference;
 mod replay;
 mod report;
+mod roadmap;
 mod scenarios;
 mod schema;
 mod table;
@@ -59,6 +61,7 @@ fn main() -> ExitCode {
         Command::View(args) => view::run(args),
         Command::Export(args) => export::run(args),
         Command::Grasps(args) => grasps::run(args),
+        Command::Roadmap(args) => roadmap::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Hand(args) => hand::run(args),
         Command::Object(args) => object::run(args),

@@ -30,6 +30,8 @@ pub enum Kind {
     Grasps,
     /// Grasps that are still being looked for.
     BegunGrasps,
+    /// A roadmap.
+    Roadmap,
     /// The result of a replay.
     Replay,
     /// A hand file.
@@ -50,6 +52,7 @@ impl Kind {
             Kind::Page => "page",
             Kind::Grasps => "file of grasps",
             Kind::BegunGrasps => "begun search for grasps",
+            Kind::Roadmap => "roadmap",
             Kind::Replay => "file of a replay",
             Kind::Hand => "hand file",
             Kind::Scenario => "scenario",
@@ -72,6 +75,7 @@ impl Kind {
                 "<!-- regrasp-grasps -->",
             ],
             Kind::BegunGrasps => &["\"regrasp-grasps-part\""],
+            Kind::Roadmap => &["regrasp-roadmap\n"],
             Kind::Replay => &["\"regrasp-replay\""],
             Kind::Hand => &[HAND_MARK],
             Kind::Scenario => &[SCENARIO_MARK],

@@ -4,9 +4,10 @@ use crate::args::PlanArgs;
 use crate::grasps::kept;
 use crate::outputs::{self, Kind};
 use crate::progress::Line;
-use crate::terminal::printable;
+use crate::roadmap::Known;
+use crate::terminal::{printable, remark};
 use crate::watch::Watch;
-use crate::{Failure, inputs, overrides, plugins, report, say, say_json, view, watchdog};
+use crate::{Failure, goals, inputs, overrides, plugins, report, say, say_json, view, watchdog};
 use regrasp::api::{Level, Tally};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
@@ -29,16 +30,26 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     let line = Line::new();
     let (seed, threads) = (args.seed, usize::from(args.threads));
     let options = RunOptions { seed, threads, stop: &watch, clock: &watch, progress: &line };
+    let mut known = args.roadmap.as_deref().map(|path| Known::read(path, &setup)).transpose()?;
+    if let Some(list) = &args.goals {
+        return goals::run(&goals::Job { args, setup: &setup, options: &options, list }, known.as_mut());
+    }
     let ran = if let Some(depth) = depth(args) {
         audited(args, &setup, &options, depth).map(|ran| (ran, None))
     } else if let Some(extent) = args.improve {
         let improved = setup.improve(args.optimise.unwrap_or_default(), extent, &options);
         improved.map(|Improved { run, course }| (run, Some(course))).map_err(Failure::refused)
+    } else if let Some(known) = &known {
+        known.run(&setup, &options).map(|ran| (ran, None))
     } else {
         setup.run(&options).map(|ran| (ran, None)).map_err(Failure::refused)
     };
     line.finish();
     let (ran, course) = ran?;
+    if let Some(known) = known.as_mut().filter(|_| args.roadmap_add) {
+        known.learn(&setup, &options, &ran)?;
+        remark(&known.keep()?);
+    }
     pass_on(&ran.outcome.tally, args.log);
     let saved = save(args.output.as_deref(), &ran)?;
     if let Some(path) = &args.grasps {
@@ -115,14 +126,6 @@ fn pass_on(tally: &Tally, most: Level) {
     }
 }
 
-/// Tells on standard error what was chosen while the scenario was read.
-fn remark(remarks: &[String]) {
-    for remark in remarks {
-        // A reader of standard error that has gone away is no failure.
-        let _ = writeln!(io::stderr(), "note: {}", printable(remark));
-    }
-}
-
 /// Refuses what could not be written, or would destroy something, before any work is done.
 fn check_outputs(args: &PlanArgs) -> Result<(), Failure> {
     let standard = args.output.as_deref().is_some_and(outputs::is_standard);
@@ -133,7 +136,10 @@ fn check_outputs(args: &PlanArgs) -> Result<(), Failure> {
     }
     kept::check(args.grasps.as_deref())?;
     let mut inputs = inputs::of_scenario(&args.scenario);
-    inputs.extend(args.libraries.load.iter().cloned());
+    inputs.extend(args.libraries.load.iter().chain(&args.roadmap).chain(&args.goals).cloned());
+    if args.goals.is_some() {
+        return goals::check(args, &inputs);
+    }
     let plan = args.output.as_deref().filter(|_| !standard);
     let others = plan.map(|path| [beside(path, "partial"), beside(path, "rejected")]).into_iter().flatten();
     let page = plan.filter(|_| args.view || args.view_graph).map(|path| path.with_extension("html"));

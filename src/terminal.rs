@@ -1,6 +1,15 @@
-//! What names from files may do to a terminal: nothing.
+//! What names from files may do to a terminal: nothing. And what is told beside a command's output.
 
 use std::borrow::Cow;
+use std::io::{self, Write};
+
+/// Tells something on standard error, a line each.
+pub fn remark(remarks: &[String]) {
+    for remark in remarks {
+        // A reader of standard error that has gone away is no failure.
+        let _ = writeln!(io::stderr(), "note: {}", printable(remark));
+    }
+}
 
 /// The text with control characters made visible, but for the ends of lines and tabs.
 ///

@@ -41,6 +41,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     ("regrasp-physics", &["regrasp-api", "regrasp-world"]),
+    ("regrasp-roadmap", &["regrasp-api", "regrasp-plan", "regrasp-planner", "regrasp-run"]),
     (
         "regrasp-run",
         &[

@@ -12,6 +12,7 @@ mod hold;
 mod json_errors;
 mod outputs;
 mod pages;
+mod roadmap;
 mod rough;
 mod search;
 mod wording;

@@ -1,10 +1,9 @@
 //! Algorithm 3: edges between nodes that are there.
 
-use crate::meet;
+use crate::joined::joined;
 use crate::search::Search;
 use crate::session::Call;
-use crate::steps::transfer_then_regrasp;
-use regrasp_api::{CallError, Connection, EdgeId, EdgeKind, EdgeVerdict, Effect, NodeId};
+use regrasp_api::{CallError, EdgeId, EdgeKind, EdgeVerdict, Effect, NodeId};
 
 impl Search<'_> {
     /// Tries an edge of the given kind between two nodes.
@@ -51,10 +50,8 @@ impl Search<'_> {
     fn connect_outside(&mut self, a: NodeId, b: NodeId) -> Result<Effect, CallError> {
         let (from, to) = (self.state.graph.node(a), self.state.graph.node(b));
         let key = (Call::TransferRegrasp, u64::from(a.0), u64::from(b.0));
-        let found = self.session.counted(&self.leg.task, key, |work| match self.leg.policy.connection {
-            Connection::OneEnd => transfer_then_regrasp(work, from, to),
-            _ => meet::connect(work, from, to),
-        });
+        let how = (EdgeKind::TransferRegrasp, &self.leg.policy);
+        let found = self.session.counted(&self.leg.task, key, |work| joined(work, how, from, to));
         self.state.tally.add(&found.tally);
         let Some(segments) = found.result? else { return Ok(Effect::Failed) };
         let graph = &mut self.state.graph;

@@ -38,6 +38,12 @@ impl Run<'_> {
         Ok((goals, finder))
     }
 
+    /// The goal's own grasp, where the problem gives one.
+    pub fn goal_given(&mut self, leg: usize) -> Result<Option<Configuration>, PlanError> {
+        let grasp = self.request.problem.goal[leg].grasp.as_deref();
+        grasp.map(|grasp| self.given(End::Goal(leg), self.poses[leg + 1], grasp)).transpose()
+    }
+
     /// The contacts of the leg's start at its goal, if the object can be held there by them: the shortest of
     /// all plans may be one roll.
     fn same_grasp(&mut self, start: NodeId, leg: usize) -> Result<Option<NodeId>, Halt> {

@@ -5,6 +5,7 @@
 //! [`solve`] makes a `run`, which finds grasps at start and goals (`endpoints`), makes one search a goal
 //! (first by a `relay`; then Algorithm 1 in `search`, 2 in `explore`, 3 in `connect` and `meet`; on `graph`),
 //! whose `query` is decomposed (`decompose`, `steps`, `order`), smooths the whole (`smooth`) and times it.
+//! A [`roadmap`] is the same graph without start and goal, kept for many queries.
 //! The one way back: an edge that cannot be decomposed leaves the graph.
 //!
 //! The result is that of the sequential algorithm for any number of threads: every expensive call is a pure
@@ -23,6 +24,7 @@ mod foresight;
 mod glide;
 mod graph;
 mod history;
+mod joined;
 mod meet;
 mod order;
 mod query;
@@ -31,6 +33,7 @@ mod relay;
 mod relayed;
 mod report;
 mod request;
+pub mod roadmap;
 mod run;
 mod search;
 mod segments;
@@ -46,4 +49,4 @@ pub use error::{End, PlanError};
 pub use record::{EdgeRecord, Fate, GraphRecord};
 pub use report::{Clock, Outcome, Progress, Silent, Status, Stuck};
 pub use request::Request;
-pub use solve::solve;
+pub use solve::{solve, solve_through};

@@ -1,11 +1,11 @@
 //! The query: a way through the graph, whose paths in GS_n become transfers and regrasps.
 
-use crate::decompose::{decompose, halve};
+use crate::joined::joined;
 use crate::search::Search;
 use crate::segments::{moves, reversed};
 use crate::session::{Call, Counted};
 use crate::shortest_path::{Step, shortest_path};
-use regrasp_api::{CallError, Decomposition, EdgeId};
+use regrasp_api::{CallError, EdgeId, EdgeKind};
 use regrasp_plan::Segment;
 
 type Decomposed = Counted<Result<Option<Vec<Segment>>, CallError>>;
@@ -52,10 +52,8 @@ impl Search<'_> {
         let edge = graph.edge(id).expect("the path's edges are in the graph");
         let (from, to) = (graph.node(edge.from), graph.node(edge.to));
         let key = (Call::Decompose, u64::from(edge.from.0), u64::from(edge.to.0));
-        self.session.counted(&self.leg.task, key, |work| match self.leg.policy.decomposition {
-            Decomposition::Halving => halve(work, from, to),
-            _ => decompose(work, from, to),
-        })
+        let how = (EdgeKind::Grasp, &self.leg.policy);
+        self.session.counted(&self.leg.task, key, |work| joined(work, how, from, to))
     }
 
     fn assemble(&self, path: &[Step]) -> Vec<Segment> {

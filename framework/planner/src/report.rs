@@ -32,6 +32,7 @@ impl Progress for Silent {}
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Phase {
     Endpoints,
+    Roadmap,
     Relay,
     Search,
     Smoothing,
@@ -43,6 +44,7 @@ impl Phase {
     pub fn name(self) -> &'static str {
         match self {
             Self::Endpoints => "endpoints",
+            Self::Roadmap => "roadmap",
             Self::Relay => "relay",
             Self::Search => "search",
             Self::Smoothing => "smoothing",
@@ -85,7 +87,8 @@ pub struct Outcome {
     pub motion: Motion,
     /// For each goal that the motion reaches, in turn, how many of its segments are done by then.
     pub goal_ends: Vec<usize>,
-    /// Counts, and times of the phases `endpoints`, `relay`, `search`, `smoothing` and `timing`.
+    /// Counts, and times of the phases `endpoints`, `roadmap`, `relay`, `search`, `smoothing` and
+    /// `timing`.
     pub statistics: Statistics,
     /// Calls and rejections by cause.
     pub tally: Tally,

@@ -6,6 +6,7 @@ use crate::error::{End, PlanError};
 use crate::graph::Graph;
 use crate::report::{Phase, Stuck};
 use crate::request::Request;
+use crate::roadmap::Through;
 use crate::search::{Budget, Ended, Leg, Search, State};
 use crate::session::{Call, Session};
 use regrasp_api::{CallError, EdgeId, FingerSet, NodeId, Pose, Random, SearchPolicy, Tally, Task};
@@ -37,6 +38,8 @@ impl From<PlanError> for Halt {
 /// A run: what is planned, and how far it is.
 pub(crate) struct Run<'a> {
     pub request: &'a Request<'a>,
+    /// The roadmap to plan through, if there is one.
+    pub through: Option<Through<'a>>,
     pub session: Session<'a>,
     pub task: Task<'a>,
     pub poses: &'a [Pose],
@@ -71,10 +74,31 @@ impl Run<'_> {
     /// its ends: what was drawn first may be a dead end, and nobody knows. All rounds together spend the
     /// leg's budget.
     fn leg(&mut self, leg: usize, at: Option<NodeId>) -> Result<NodeId, Halt> {
+        if let Some(through) = self.through
+            && let Some((start, segments)) =
+                self.timed(Phase::Roadmap, |run| run.through_roadmap(leg, at, through))?
+        {
+            return Ok(self.reached(leg, start, segments));
+        } else if let Some(through) = self.through {
+            self.roadmap_failed(leg, through)?;
+        }
         let mut budget = Budget { most: self.request.problem.limits.budget.max_nodes, ..Default::default() };
         let ended = self.rounds(leg, at, &mut budget);
         self.count(&budget);
         ended
+    }
+
+    /// What is done where the roadmap knows no way.
+    fn roadmap_failed(&mut self, leg: usize, through: Through<'_>) -> Result<(), Halt> {
+        if through.alone {
+            return Err(Halt::Stuck(Stuck::Search(leg)));
+        }
+        self.warnings.push(format!(
+            "the roadmap of {} nodes knows no way to `goal[{leg}]`, which was searched as without it; a \
+             larger roadmap knows more",
+            through.graph.node_count()
+        ));
+        Ok(())
     }
 
     fn rounds(&mut self, leg: usize, at: Option<NodeId>, budget: &mut Budget) -> Result<NodeId, Halt> {

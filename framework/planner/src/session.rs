@@ -55,6 +55,14 @@ pub(crate) enum Call {
     Round = 10,
     /// A relay from a leg's start to its goal.
     Relay = 11,
+    /// A sample for a roadmap.
+    RoadmapSample = 12,
+    /// An edge of a roadmap.
+    RoadmapEdge = 13,
+    /// The way from a node of a roadmap to an end of a query.
+    RoadmapEnd = 14,
+    /// A random pair of start and goal.
+    RoadmapPair = 15,
 }
 
 /// The key of a call: what it is for, and two numbers that tell calls of a kind apart.

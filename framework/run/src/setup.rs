@@ -7,7 +7,7 @@ use crate::scenario::{Scenario, ScenarioError, other_test};
 use regrasp_abi::GuardedService;
 use regrasp_api::{
     Clearance, FrictionFactor, Hand, HoldDescription, Interrupt, Parts, Pose, PoseDescription, PoseError,
-    Problem, Refuse, Vec3,
+    Problem, Refusal, Refuse, Vec3,
 };
 use regrasp_host::{Choices, PluginSet, Registry, Source};
 use regrasp_plan::{Plan, StoppedBy};
@@ -180,7 +180,29 @@ impl<'a> Setup<'a> {
 
     /// Plans with `solve`, which calls the planner with the request or with a changed one, and verifies.
     pub fn run_by(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Run, RunError> {
-        let run = self.plan_and_verify(solve, options);
+        let begin = options.clock.seconds();
+        self.refuse_too_heavy()?;
+        let looked_s = options.clock.seconds() - begin;
+        let mut run = self.run_problem(&self.scenario.problem, solve, options)?;
+        run.planning_s += looked_s;
+        Ok(run)
+    }
+
+    /// What stands in the object's way at a pose; the key of that pose is `key`.
+    pub fn check_pose(&self, key: &str, X_HO: &Pose) -> Result<(), Box<Refusal>> {
+        let overlap = |pair| Box::new(error::collision(self.scenario, key, pair, "move one of them"));
+        self.clearance.object_free(X_HO).map_err(overlap)
+    }
+
+    /// Plans with `solve` for another start or other goals, which nobody has checked yet, and verifies; all
+    /// else of `problem` must be the scenario's own. The plugins were told the scenario's start and goals.
+    pub fn run_problem(
+        &self,
+        problem: &Problem,
+        solve: Solve<'_>,
+        options: &RunOptions<'_>,
+    ) -> Result<Run, RunError> {
+        let run = self.plan_and_verify(problem, solve, options);
         // A plugin that panicked outside the planner's own calls, say while cones were written down, spoils
         // the whole.
         match regrasp_api::take_fault() {
@@ -189,13 +211,31 @@ impl<'a> Setup<'a> {
         }
     }
 
+    /// Asks the planner for something else than a plan: `ask` gets what a run would get.
+    pub fn ask<T>(
+        &self,
+        options: &RunOptions<'_>,
+        ask: impl FnOnce(&Request<'_>) -> Result<T, PlanError>,
+    ) -> Result<T, RunError> {
+        let problem = shares(&self.scenario.problem).swap_remove(0);
+        let answer = self.requested(&problem, options, options.seed, ask);
+        match regrasp_api::take_fault() {
+            Some(fault) => Err(RunError::Call(fault)),
+            None => answer,
+        }
+    }
+
     /// Plans for one share of the friction after the other where `[hold]` asks for as little as can be: the
     /// last plan that comes about is the one that needs least.
-    fn plan_and_verify(&self, solve: Solve<'_>, options: &RunOptions<'_>) -> Result<Run, RunError> {
+    fn plan_and_verify(
+        &self,
+        problem: &Problem,
+        solve: Solve<'_>,
+        options: &RunOptions<'_>,
+    ) -> Result<Run, RunError> {
         let begin = options.clock.seconds();
-        self.refuse_too_heavy()?;
         let mut best: Option<Run> = None;
-        for problem in self.problems() {
+        for problem in shares(problem) {
             // A smaller share of the friction is one more wish: where it does not come about, nothing is
             // tried again for it.
             let tries = if best.is_none() { &TRIES[..] } else { &TRIES[..1] };
@@ -212,19 +252,6 @@ impl<'a> Setup<'a> {
         let mut run = best.expect("there is a share of the friction to plan with");
         run.planning_s = options.clock.seconds() - begin - run.verification_s;
         Ok(run)
-    }
-
-    /// The problem with each share of the friction that it is to be planned with in turn.
-    fn problems(&self) -> Vec<Problem> {
-        let problem = &self.scenario.problem;
-        let Some(hold) = problem.hold else { return vec![problem.clone()] };
-        let planned = |&share: &f64| {
-            let mut problem = problem.clone();
-            problem.hold = Some(HoldDescription { friction_factor: FrictionFactor::Share(share), ..hold });
-            problem.limits.resolution.friction_margin = share;
-            problem
-        };
-        hold.friction_factor.shares().iter().map(planned).collect()
     }
 
     /// Plans in one way after the other until the verifier accepts the plan; where it accepts none, the last
@@ -263,7 +290,7 @@ impl<'a> Setup<'a> {
         how: Try,
     ) -> Result<Run, RunError> {
         let begin = options.clock.seconds();
-        let outcome = self.solve(&how.problem(problem), solve, options, how.seed(options.seed))?;
+        let outcome = self.requested(&how.problem(problem), options, how.seed(options.seed), solve)?;
         let planned = options.clock.seconds();
         let stopped_by = stopped_by(&outcome, options.stop);
         let (mut plan, mut verdict) = (None, None);
@@ -284,13 +311,13 @@ impl<'a> Setup<'a> {
         })
     }
 
-    fn solve(
+    fn requested<T>(
         &self,
         problem: &Problem,
-        solve: Solve<'_>,
         options: &RunOptions<'_>,
         seed: u64,
-    ) -> Result<Outcome, RunError> {
+        ask: impl FnOnce(&Request<'_>) -> Result<T, PlanError>,
+    ) -> Result<T, RunError> {
         let (hand, clearance) = (self.hand(), &self.clearance as &dyn Clearance);
         let guarded_hand = GuardedService::guarding("service/hand", hand);
         let guarded_clearance = GuardedService::guarding("service/clearance", clearance);
@@ -306,13 +333,25 @@ impl<'a> Setup<'a> {
             clock: options.clock,
             progress: options.progress,
         };
-        solve(&request).map_err(|error| RunError::of_planner(self.scenario, error))
+        ask(&request).map_err(|error| RunError::of_planner(self.scenario, error))
     }
 
     /// The hand.
     pub fn hand(&self) -> &dyn Hand {
         self.scenario.hand.as_ref()
     }
+}
+
+/// The problem with each share of the friction that it is to be planned with in turn; at least one.
+fn shares(problem: &Problem) -> Vec<Problem> {
+    let Some(hold) = problem.hold else { return vec![problem.clone()] };
+    let planned = |&share: &f64| {
+        let mut problem = problem.clone();
+        problem.hold = Some(HoldDescription { friction_factor: FrictionFactor::Share(share), ..hold });
+        problem.limits.resolution.friction_margin = share;
+        problem
+    };
+    hold.friction_factor.shares().iter().map(planned).collect()
 }
 
 /// Refuses a stability test, which the command line may have chosen, that cannot do what `[hold]` asks for.

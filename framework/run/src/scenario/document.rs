@@ -68,6 +68,33 @@ impl Document {
             .map_err(|error| self.refuse(&KeyPath::default(), error.to_string()))
     }
 
+    /// The tables of a list in turn, each compared with its schema by itself; nothing else may stand beside
+    /// the list.
+    pub(super) fn rows<T: DeserializeOwned + schemars::JsonSchema>(
+        &self,
+        key: &str,
+    ) -> Result<Vec<Result<T, ScenarioError>>, ScenarioError> {
+        let schema = schemars::schema_for!(T).to_value();
+        let list = KeyPath::default().key(key);
+        let table = self.value.as_object();
+        if let Some(other) = table.and_then(|table| table.keys().find(|other| *other != key)) {
+            let message = format!("`{other}` is unknown here; the file holds `{key}` tables alone");
+            return Err(self.refuse(&KeyPath::default().key(other), message));
+        }
+        let Some(Value::Array(rows)) = self.value.get(key) else {
+            return Err(self.refuse(&list, format!("give a `[[{key}]]` table for each {key}")));
+        };
+        let row = |(number, row): (usize, &Value)| {
+            let at = list.item(number);
+            check_schema(row, &schema).map_err(|departure| {
+                let path = KeyPath(at.0.iter().cloned().chain(departure.path.0).collect());
+                ScenarioError::Form { place: self.place(&path), fault: departure.fault }
+            })?;
+            serde_json::from_value(row.clone()).map_err(|error| self.refuse(&at, error.to_string()))
+        };
+        Ok(rows.iter().enumerate().map(row).collect())
+    }
+
     /// The place of a key, or of the innermost table around it that the file has.
     pub fn place(&self, path: &KeyPath) -> Box<Place> {
         let known = (1..=path.0.len()).rev().map(|n| KeyPath(path.0[..n].to_vec()));

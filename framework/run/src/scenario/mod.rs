@@ -8,6 +8,7 @@ mod contact_surface;
 mod document;
 mod error;
 mod file;
+mod goals;
 mod hand;
 mod hold;
 mod json;
@@ -15,6 +16,7 @@ mod library;
 
 pub use error::*;
 pub use file::*;
+pub use goals::GoalList;
 pub use hand::{LoadedHand, load_hand};
 pub(crate) use hold::other_test;
 pub use library::*;
