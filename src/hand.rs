@@ -15,7 +15,7 @@ use clap::Args;
 use regrasp::api::{FingerIndex, Hand, HandDescription, JointDescription, Vec3};
 use regrasp::hands::{HandOptions, HandReport, JointChoice, ReadHand, read_hand, read_urdf_text};
 use regrasp::world::{ChainHand, FingerWorkspace, ObjectPlace, finger_workspace, object_places};
-use scenario::{Draft, HandSource};
+use scenario::beside;
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -211,11 +211,6 @@ fn hand_file(hand: &HandDescription) -> Result<String, Failure> {
     Ok(format!("{HAND_MARK}\n{text}"))
 }
 
-/// The hand file of a scenario that is written to `output`.
-fn beside(output: &Path) -> PathBuf {
-    output.with_extension("hand.toml")
-}
-
 fn write(path: &Path, text: &str) -> Result<(), Failure> {
     if outputs::is_standard(path) {
         return say(text);
@@ -234,35 +229,6 @@ struct Understood<'a> {
 }
 
 impl Understood<'_> {
-    /// A scenario to start from, to be written to `output`; a hand that a xacro describes is written beside
-    /// it.
-    fn scenario(&self, args: &HandArgs, output: &Path) -> Result<String, Failure> {
-        if self.places.is_empty() {
-            let message = format!(
-                "no place was found at which all fingertips reach a ball of {:.0} mm; give the radius of \
-                 another one (`--ball`)",
-                2e3 * self.ball
-            );
-            return Err(Failure::bad_input(message));
-        }
-        let (options, hand_file_path) = (options(args), beside(output));
-        let source = match xacro::is_needed(&args.file) {
-            true => {
-                write(&hand_file_path, &hand_file(self.hand.description())?)?;
-                HandSource::HandFile(&hand_file_path)
-            }
-            false => HandSource::Robot(&args.file, &options),
-        };
-        let draft = Draft { source, output, ball: self.ball, fingers: self.hand.finger_count() };
-        let (text, is_planned) = draft.placed(&self.places)?;
-        if !is_planned {
-            let note = "note: at none of the places that were tried a plan was found; change the ball's \
-                        position, its radius (`--ball`) or the limits of the joints\n";
-            let _ = std::io::stderr().write_all(note.as_bytes());
-        }
-        Ok(text)
-    }
-
     fn json(&self) -> Value {
         let description = self.hand.description();
         let finger = |(index, reach): (FingerIndex, &FingerWorkspace)| {

@@ -1,13 +1,51 @@
 //! A scenario to start from: the hand as it was read, a ball where the fingers surround it best, turned by
 //! 20°.
 
+use super::{HandArgs, Understood, hand_file, options, write, xacro};
 use crate::args::LibraryArgs;
 use crate::outputs::SCENARIO_MARK;
 use crate::{Failure, place, plugins};
-use regrasp::api::Vec3;
+use regrasp::api::{Hand, Vec3};
 use regrasp::hands::HandOptions;
 use regrasp::world::ObjectPlace;
-use std::path::Path;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The hand file of a scenario that is written to `output`.
+pub(super) fn beside(output: &Path) -> PathBuf {
+    output.with_extension("hand.toml")
+}
+
+impl Understood<'_> {
+    /// A scenario to start from, to be written to `output`; a hand that a xacro describes is written beside
+    /// it.
+    pub(super) fn scenario(&self, args: &HandArgs, output: &Path) -> Result<String, Failure> {
+        if self.places.is_empty() {
+            let message = format!(
+                "no place was found at which all fingertips reach a ball of {:.0} mm; give the radius of \
+                 another one (`--ball`)",
+                2e3 * self.ball
+            );
+            return Err(Failure::bad_input(message));
+        }
+        let (options, hand_file_path) = (options(args), beside(output));
+        let source = match xacro::is_needed(&args.file) {
+            true => {
+                write(&hand_file_path, &hand_file(self.hand.description())?)?;
+                HandSource::HandFile(&hand_file_path)
+            }
+            false => HandSource::Robot(&args.file, &options),
+        };
+        let draft = Draft { source, output, ball: self.ball, fingers: self.hand.finger_count() };
+        let (text, is_planned) = draft.placed(&self.places)?;
+        if !is_planned {
+            let note = "note: at none of the places that were tried a plan was found; change the ball's \
+                        position, its radius (`--ball`) or the limits of the joints\n";
+            let _ = std::io::stderr().write_all(note.as_bytes());
+        }
+        Ok(text)
+    }
+}
 
 /// What the plan of such a scenario bears where the hand's efforts allow it.
 const HOLD: &str = "\n[hold]\nfriction_factor = 0.8\n";
