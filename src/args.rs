@@ -87,29 +87,21 @@ pub struct PlanArgs {
     /// A scenario file, or the name of a built-in scenario.
     pub scenario: String,
     /// Seed of all random choices: the same seed gives the same plan, on any number of threads.
-    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
+    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true,
+          value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub seed: u64,
-    /// Choose plugins and settings that belong together, `paper` or `default`; `--use` and `--set` change
-    /// them further.
-    #[arg(long, value_name = "NAME")]
-    pub preset: Option<String>,
-    /// Fill a slot with another plugin; can be repeated.
-    #[arg(long = "use", value_name = "SLOT=ID")]
-    pub uses: Vec<String>,
-    /// Change a setting of the plugin in a slot; the value is TOML, and nothing behind the `=` unsets an
-    /// option; can be repeated.
-    #[arg(long = "set", value_name = "SLOT.KEY=VALUE")]
-    pub sets: Vec<String>,
     #[command(flatten)]
-    pub libraries: LibraryArgs,
+    pub choices: ChoiceArgs,
     /// Stop after this many seconds; by default when the scenario says, or never.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     pub time_limit: Option<f64>,
     /// Generate at most this many nodes for each goal; by default as many as the scenario says.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 1, 10_000_000>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true,
+          value_parser = whole::<u64, 1, 10_000_000>)]
     pub max_nodes: Option<u64>,
     /// Compute with this many threads, 1 to 256; the plan is the same.
-    #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16, 1, 256>)]
+    #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true,
+          value_parser = whole::<u16, 1, 256>)]
     pub threads: u16,
     /// Go on after the first plan, with other seeds, and keep the best plan: for this many seconds, or with
     /// an `x` for this many searches (`20x`), which gives the same plan whatever the machine.
@@ -167,6 +159,24 @@ pub struct PlanArgs {
     /// Print how often each plugin said no, by cause.
     #[arg(short = 'v', long)]
     pub rejections: bool,
+}
+
+/// Which plugins fill the slots, with which settings.
+#[derive(Debug, Args)]
+pub struct ChoiceArgs {
+    /// Choose plugins and settings that belong together, `paper` or `default`; `--use` and `--set` change
+    /// them further.
+    #[arg(long, value_name = "NAME")]
+    pub preset: Option<String>,
+    /// Fill a slot with another plugin; can be repeated.
+    #[arg(long = "use", value_name = "SLOT=ID")]
+    pub uses: Vec<String>,
+    /// Change a setting of the plugin in a slot; the value is TOML, and nothing behind the `=` unsets an
+    /// option; can be repeated.
+    #[arg(long = "set", value_name = "SLOT.KEY=VALUE")]
+    pub sets: Vec<String>,
+    #[command(flatten)]
+    pub libraries: LibraryArgs,
 }
 
 /// Libraries of plugins to load.

@@ -24,8 +24,8 @@ use std::path::{Path, PathBuf};
 pub fn run(args: &GraspsArgs) -> Result<(), Failure> {
     let output = Output::new(&args.output)?;
     let mut inputs = inputs::of_scenario(&args.scenario);
-    inputs.extend(args.libraries.load.iter().cloned());
-    let registry = plugins::registry(&args.libraries)?;
+    inputs.extend(args.choices.libraries.load.iter().cloned());
+    let registry = plugins::registry(&args.choices.libraries)?;
     let watch = Watch::start(args.time_limit);
     let job = Job { args, registry: &registry, watch: &watch, inputs };
     match &args.objects {
@@ -79,8 +79,7 @@ impl Job<'_> {
     fn scenario(&self, mesh: Option<&Path>) -> Result<Scenario, Failure> {
         let found = scenario::load_for_grasps(&self.args.scenario, mesh, self.registry);
         let mut scenario = found.map_err(Failure::refused)?;
-        overrides::apply_preset(&mut scenario.choices, self.args.preset.as_deref())?;
-        overrides::apply_plugins(&mut scenario.choices, &self.args.uses, &self.args.sets)?;
+        overrides::apply_choices(&mut scenario.choices, &self.args.choices)?;
         if let Some(stem) = mesh.and_then(Path::file_stem) {
             scenario.problem.object.name = stem.to_string_lossy().into_owned();
         }

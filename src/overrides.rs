@@ -1,7 +1,7 @@
 //! `--use`, `--set` and the budgets: what the command line changes in a scenario.
 
 use crate::Failure;
-use crate::args::PlanArgs;
+use crate::args::{ChoiceArgs, PlanArgs};
 use regrasp::api::Slot;
 use regrasp::host::{Choices, HostError, slot_by_name};
 use regrasp::run::scenario::Scenario;
@@ -9,12 +9,17 @@ use serde_json::Value;
 
 /// Applies the changes; `--use` before `--set`, whatever their order.
 pub fn apply(scenario: &mut Scenario, args: &PlanArgs) -> Result<(), Failure> {
-    apply_preset(&mut scenario.choices, args.preset.as_deref())?;
-    apply_plugins(&mut scenario.choices, &args.uses, &args.sets)?;
+    apply_choices(&mut scenario.choices, &args.choices)?;
     limit_nodes(scenario, args.max_nodes);
     let budget = &mut scenario.problem.limits.budget;
     budget.time_limit = args.time_limit.or(budget.time_limit);
     Ok(())
+}
+
+/// Applies `--preset`, then `--use`, then `--set`.
+pub fn apply_choices(choices: &mut Choices, args: &ChoiceArgs) -> Result<(), Failure> {
+    apply_preset(choices, args.preset.as_deref())?;
+    apply_plugins(choices, &args.uses, &args.sets)
 }
 
 /// Applies `--preset`, which comes before `--use` and `--set`.

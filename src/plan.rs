@@ -17,11 +17,11 @@ use std::path::{Path, PathBuf};
 
 pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     check_outputs(args)?;
-    let registry = plugins::registry(&args.libraries)?;
+    let registry = plugins::registry(&args.choices.libraries)?;
     let mut scenario = scenario::load(&args.scenario, &registry).map_err(Failure::refused)?;
     remark(&scenario.remarks);
     overrides::apply(&mut scenario, args)?;
-    if let Some(name) = &args.preset {
+    if let Some(name) = &args.choices.preset {
         remark(&[format!("preset `{name}` sets{}", listed(&overrides::preset_lines(name)))]);
     }
     let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::refused)?;
@@ -85,7 +85,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
 /// one.
 fn depth(args: &PlanArgs) -> Option<Depth> {
     let asked = args.audit || args.audit_save.is_some();
-    let unasked = cfg!(debug_assertions) && !args.libraries.load.is_empty();
+    let unasked = cfg!(debug_assertions) && !args.choices.libraries.load.is_empty();
     if asked { Some(Depth::Full) } else { unasked.then_some(Depth::Sparse) }
 }
 
@@ -136,7 +136,7 @@ fn check_outputs(args: &PlanArgs) -> Result<(), Failure> {
     }
     kept::check(args.grasps.as_deref())?;
     let mut inputs = inputs::of_scenario(&args.scenario);
-    inputs.extend(args.libraries.load.iter().chain(&args.roadmap).chain(&args.goals).cloned());
+    inputs.extend(args.choices.libraries.load.iter().chain(&args.roadmap).chain(&args.goals).cloned());
     if args.goals.is_some() {
         return goals::check(args, &inputs);
     }

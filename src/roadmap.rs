@@ -26,15 +26,14 @@ const UNSAVED_S: f64 = 10.0;
 
 pub fn run(args: &RoadmapArgs) -> Result<(), Failure> {
     let mut inputs = inputs::of_scenario(&args.scenario);
-    inputs.extend(args.libraries.load.iter().cloned());
+    inputs.extend(args.choices.libraries.load.iter().cloned());
     outputs::check(&inputs, &[(&args.output, Kind::Roadmap)], args.overwrite)?;
     if outputs::is_standard(&args.output) {
         return Err(Failure::bad_input("`-o -`: a roadmap needs a file; name one"));
     }
-    let registry = plugins::registry(&args.libraries)?;
+    let registry = plugins::registry(&args.choices.libraries)?;
     let mut scenario = scenario::load(&args.scenario, &registry).map_err(Failure::refused)?;
-    overrides::apply_preset(&mut scenario.choices, args.preset.as_deref())?;
-    overrides::apply_plugins(&mut scenario.choices, &args.uses, &args.sets)?;
+    overrides::apply_choices(&mut scenario.choices, &args.choices)?;
     let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::refused)?;
     let identity = Identity::of(&setup, args.seed);
     let watch = Watch::start(args.seconds);

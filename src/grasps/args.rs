@@ -1,6 +1,6 @@
 //! What `regrasp grasps` takes.
 
-use crate::args::LibraryArgs;
+use crate::args::ChoiceArgs;
 use crate::numbers::{seconds, whole};
 use crate::outputs::OverwriteArgs;
 use std::path::PathBuf;
@@ -60,17 +60,8 @@ pub struct GraspsArgs {
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true,
           value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub seed: u64,
-    /// Choose plugins and settings that belong together, `paper` or `default`.
-    #[arg(long, value_name = "NAME")]
-    pub preset: Option<String>,
-    /// Fill a slot with another plugin; can be repeated.
-    #[arg(long = "use", value_name = "SLOT=ID")]
-    pub uses: Vec<String>,
-    /// Change a setting of the plugin in a slot; the value is TOML; can be repeated.
-    #[arg(long = "set", value_name = "SLOT.KEY=VALUE")]
-    pub sets: Vec<String>,
     #[command(flatten)]
-    pub libraries: LibraryArgs,
+    pub choices: ChoiceArgs,
     /// Stop after this many seconds.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     pub time_limit: Option<f64>,

@@ -1,6 +1,6 @@
 //! What `regrasp roadmap` takes.
 
-use crate::args::LibraryArgs;
+use crate::args::ChoiceArgs;
 use crate::numbers::{seconds, whole};
 use crate::outputs::OverwriteArgs;
 use std::path::PathBuf;
@@ -44,17 +44,8 @@ pub struct RoadmapArgs {
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true,
           value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub seed: u64,
-    /// Choose plugins and settings that belong together, `paper` or `default`.
-    #[arg(long, value_name = "NAME")]
-    pub preset: Option<String>,
-    /// Fill a slot with another plugin; can be repeated.
-    #[arg(long = "use", value_name = "SLOT=ID")]
-    pub uses: Vec<String>,
-    /// Change a setting of the plugin in a slot; the value is TOML; can be repeated.
-    #[arg(long = "set", value_name = "SLOT.KEY=VALUE")]
-    pub sets: Vec<String>,
     #[command(flatten)]
-    pub libraries: LibraryArgs,
+    pub choices: ChoiceArgs,
     /// Compute with this many threads, 1 to 256; the roadmap is the same.
     #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true,
           value_parser = whole::<u16, 1, 256>)]

@@ -8,6 +8,7 @@ import subprocess
 
 import pytest
 from page_laws import keeps_the_laws
+from pages import ready
 
 WINDOWS = [(1280, 800), (390, 844)]
 MULTIPLIER, OFFSET = 0.6, 0.1
@@ -66,12 +67,6 @@ def scan(plan):
     noise = random.Random(5)
     text = "".join("v {:.9f} {:.9f} {:.9f}\n".format(*(x + noise.gauss(0, 8e-5) for x in vertex)) for vertex in vertices)
     return text + "".join("f {} {} {}\n".format(*(k + 1 for k in facet)) for facet in facets)
-
-
-def ready(visit, path, **options):
-    seen = visit(path, **options)
-    seen.page.wait_for_function("document.body.dataset.ready === 'true'", timeout=30_000)
-    return seen
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -10,6 +10,7 @@ import zipfile
 
 import pytest
 from page_laws import PLOTS, keeps_the_laws, show_all_plots
+from pages import quiet, ready
 
 WINDOWS = [(1280, 800), (390, 844)]
 
@@ -30,17 +31,6 @@ def folder(tmp_path_factory, regrasp):
 @pytest.fixture(scope="module")
 def plan(folder):
     return json.loads((folder / "plan.json").read_text())
-
-
-def ready(visit, path, **options):
-    seen = visit(path, **options)
-    seen.page.wait_for_function("document.body.dataset.ready === 'true'", timeout=30_000)
-    return seen
-
-
-def quiet(seen, path):
-    assert seen.complaints == []
-    assert seen.foreign_requests(path) == []
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -9,6 +9,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from pages import quiet, ready
 
 # A modest window: what a browser draws in software, without a graphics processor, must still look like motion.
 MODEST = {"width": 640, "height": 480}
@@ -28,18 +29,6 @@ def folder(tmp_path_factory, regrasp):
 @pytest.fixture(scope="module")
 def plan(folder):
     return json.loads((folder / "plan.json").read_text())
-
-
-def ready(visit, path, **options):
-    """Opens a page and waits until it says that it is ready."""
-    seen = visit(path, **options)
-    seen.page.wait_for_function("document.body.dataset.ready === 'true'", timeout=20_000)
-    return seen
-
-
-def quiet(seen, path):
-    assert seen.complaints == []
-    assert seen.foreign_requests(path) == []
 
 
 def canvas_colors(page):

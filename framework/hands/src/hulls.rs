@@ -60,7 +60,7 @@ impl Hulls {
     }
 
     /// What stands for a mesh, or why nothing can.
-    pub fn of(&mut self, name: &str, scale: [f64; 3]) -> Result<&Convex, String> {
+    pub(super) fn of(&mut self, name: &str, scale: [f64; 3]) -> Result<&Convex, String> {
         let path = self.packages.resolve(name).map_err(|missing| {
             let tried: Vec<String> =
                 missing.tried.iter().take(4).map(|path| format!("`{}`", path.display())).collect();

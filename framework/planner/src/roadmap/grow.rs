@@ -51,12 +51,7 @@ pub fn grow(
     nodes: usize,
     told: &mut dyn FnMut(&Roadmap) -> bool,
 ) -> Result<Grown, PlanError> {
-    let poses = poses(request.problem)?;
-    with_task(request, &poses, |task, session, policy| {
-        let task = Task { landmarks: &[], ..*task };
-        let session = Session { seed: roadmap.seed, ..*session };
-        let choices = finger_choices(&task, policy.spare_fingers, policy.more_fingers)?;
-        let gardener = Gardener { task, session, policy, choices };
+    with_gardener(request, roadmap.seed, |gardener| {
         loop {
             match gardener.batch(roadmap, nodes) {
                 Ok(None) => {}
@@ -68,6 +63,21 @@ pub fn grow(
                 return Ok(Grown::Interrupted);
             }
         }
+    })
+}
+
+/// Does something with what growing needs for a request and a roadmap's seed.
+pub(super) fn with_gardener<T>(
+    request: &Request<'_>,
+    seed: u64,
+    work: impl FnOnce(&Gardener<'_>) -> Result<T, PlanError>,
+) -> Result<T, PlanError> {
+    let poses = poses(request.problem)?;
+    with_task(request, &poses, |task, session, policy| {
+        let task = Task { landmarks: &[], ..*task };
+        let session = Session { seed, ..*session };
+        let choices = finger_choices(&task, policy.spare_fingers, policy.more_fingers)?;
+        work(&Gardener { task, session, policy, choices })
     })
 }
 

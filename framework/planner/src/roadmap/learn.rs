@@ -1,12 +1,10 @@
 //! What plans teach a roadmap.
 
-use super::grow::Gardener;
+use super::grow::{Gardener, with_gardener};
 use super::map::Roadmap;
 use crate::error::PlanError;
 use crate::request::Request;
-use crate::session::Session;
-use crate::solve::{finger_choices, poses, with_task};
-use regrasp_api::{CallError, Configuration, Task};
+use regrasp_api::{CallError, Configuration};
 use regrasp_plan::{Motion, Segment, SegmentKind};
 
 /// Adds to a roadmap the grasps in which a motion begins, rolls on, and ends, those that may be nodes, each
@@ -14,12 +12,7 @@ use regrasp_plan::{Motion, Segment, SegmentKind};
 ///
 /// A roadmap that has learnt is no longer the one that its seed and its number of nodes give.
 pub fn learn(request: &Request<'_>, roadmap: &mut Roadmap, motion: &Motion) -> Result<usize, PlanError> {
-    let poses = poses(request.problem)?;
-    with_task(request, &poses, |task, session, policy| {
-        let task = Task { landmarks: &[], ..*task };
-        let session = Session { seed: roadmap.seed, ..*session };
-        let choices = finger_choices(&task, policy.spare_fingers, policy.more_fingers)?;
-        let gardener = Gardener { task, session, policy, choices };
+    with_gardener(request, roadmap.seed, |gardener| {
         let (mut before, mut added) = (None, 0);
         for q in stations(motion) {
             if let Some(node) = gardener.plant(roadmap, q, before)? {

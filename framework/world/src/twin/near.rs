@@ -58,7 +58,7 @@ impl Grid {
         let low = mesh.vertices().iter().copied().reduce(|a, b| a.inf(&b)).unwrap_or_default();
         let high = mesh.vertices().iter().copied().reduce(|a, b| a.sup(&b)).unwrap_or_default();
         let cell = ((high - low).max() / MOST_CELLS).max(2.0 * tolerance);
-        // Half a cell to spare on each side: more than the tolerance.
+        // A cell to spare on each side: more than the tolerance.
         let low = low - Vec3::repeat(cell);
         let counts = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / cell) as usize + 2);
         Self { low, cell, counts }
