@@ -42,6 +42,7 @@ pub use stopwatch::Stopwatch;
 
 pub use regrasp_abi as abi;
 pub use regrasp_api as api;
+pub use regrasp_atlas as atlas;
 pub use regrasp_export as export;
 pub use regrasp_formats as formats;
 pub use regrasp_grasps as grasps;
@@ -53,6 +54,7 @@ pub use regrasp_planner as planner;
 pub use regrasp_roadmap as roadmap;
 pub use regrasp_run as run;
 pub use regrasp_study as study;
+pub use regrasp_suite as suite;
 pub use regrasp_verify as verify;
 pub use regrasp_view as view;
 pub use regrasp_world as world;

@@ -4,6 +4,7 @@
 //! that does not arrive; 130 interrupted.
 
 mod args;
+mod atlas;
 mod compare;
 mod completions;
 mod doctor;
@@ -34,6 +35,7 @@ mod report;
 mod roadmap;
 mod scenarios;
 mod schema;
+mod suite;
 mod table;
 mod terminal;
 mod verify;
@@ -62,6 +64,8 @@ fn main() -> ExitCode {
         Command::Export(args) => export::run(args),
         Command::Grasps(args) => grasps::run(args),
         Command::Roadmap(args) => roadmap::run(args),
+        Command::Atlas(args) => atlas::run(args),
+        Command::Suite(args) => suite::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Hand(args) => hand::run(args),
         Command::Object(args) => object::run(args),

@@ -32,6 +32,10 @@ pub enum Kind {
     BegunGrasps,
     /// A roadmap.
     Roadmap,
+    /// A file of an atlas.
+    Atlas,
+    /// The results of a protocol.
+    Suite,
     /// The result of a replay.
     Replay,
     /// A hand file.
@@ -53,6 +57,8 @@ impl Kind {
             Kind::Grasps => "file of grasps",
             Kind::BegunGrasps => "begun search for grasps",
             Kind::Roadmap => "roadmap",
+            Kind::Atlas => "file of an atlas",
+            Kind::Suite => "results of a protocol",
             Kind::Replay => "file of a replay",
             Kind::Hand => "hand file",
             Kind::Scenario => "scenario",
@@ -76,6 +82,13 @@ impl Kind {
             ],
             Kind::BegunGrasps => &["\"regrasp-grasps-part\""],
             Kind::Roadmap => &["regrasp-roadmap\n"],
+            Kind::Atlas => &[
+                "content=\"regrasp atlas\"",
+                "\"regrasp-atlas\"",
+                "\"regrasp-atlas-part\"",
+                "hand,shape,size_mm,friction,mass_kg,",
+            ],
+            Kind::Suite => &["\"regrasp-suite\"", "<!-- regrasp-suite -->"],
             Kind::Replay => &["\"regrasp-replay\""],
             Kind::Hand => &[HAND_MARK],
             Kind::Scenario => &[SCENARIO_MARK],

@@ -102,6 +102,9 @@ pub fn run(args: &ReplayArgs) -> Result<(), crate::Failure> {
 }
 
 #[cfg(feature = "rapier")]
+pub use simulated::by_default;
+
+#[cfg(feature = "rapier")]
 mod simulated;
 #[cfg(feature = "rapier")]
 mod sweep;

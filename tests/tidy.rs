@@ -41,6 +41,30 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     ("regrasp-physics", &["regrasp-api", "regrasp-world"]),
+    (
+        "regrasp-atlas",
+        &[
+            "regrasp-api",
+            "regrasp-grasps",
+            "regrasp-host",
+            "regrasp-plan",
+            "regrasp-planner",
+            "regrasp-run",
+            "regrasp-study",
+        ],
+    ),
+    (
+        "regrasp-suite",
+        &[
+            "regrasp-api",
+            "regrasp-atlas",
+            "regrasp-host",
+            "regrasp-plan",
+            "regrasp-planner",
+            "regrasp-run",
+            "regrasp-study",
+        ],
+    ),
     ("regrasp-roadmap", &["regrasp-api", "regrasp-plan", "regrasp-planner", "regrasp-run"]),
     (
         "regrasp-run",

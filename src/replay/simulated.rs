@@ -37,6 +37,24 @@ pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
     if told.report.arrived { Ok(()) } else { Err(Failure::not_arrived(told.why())) }
 }
 
+/// What comes of a plan that is replayed as without options.
+pub fn by_default(plan: &Plan) -> Result<ReplayReport, Failure> {
+    let args = ReplayArgs {
+        plan: "the plan".into(),
+        json: false,
+        output: None,
+        overwrite: outputs::OverwriteArgs { force: false },
+        friction_scale: 1.0,
+        mass_scale: 1.0,
+        stiffness_scale: 1.0,
+        slowdown: 2.0,
+        grip: None,
+        sweep: false,
+        gravity: None,
+    };
+    Ok(Told::new(&args, plan)?.report)
+}
+
 /// A replay with what a report about it mentions.
 pub(super) struct Told<'a> {
     args: &'a ReplayArgs,

@@ -6,8 +6,8 @@ use regrasp::run::scenario::from_text;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// Keys by which other files are told from scenarios: manifests, studies, hands.
-const OTHERS: [&str; 6] = ["package", "dependencies", "lib", "scenarios", "variant", "finger"];
+/// Keys by which other files are told from scenarios: manifests, studies, hands, protocols.
+const OTHERS: [&str; 7] = ["package", "dependencies", "lib", "scenarios", "variant", "finger", "series"];
 
 /// Pieces that are no TOML, or no scenario.
 pub fn faults(tree: &Tree) -> Vec<String> {

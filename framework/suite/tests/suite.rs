@@ -1,0 +1,91 @@
+//! Protocols run: the same on any number of threads; chains go on from where they ended.
+
+use regrasp_contact_models as _;
+use regrasp_graph_strategies as _;
+use regrasp_host::Registry;
+use regrasp_local_planners as _;
+use regrasp_plan::Plan;
+use regrasp_planner::Clock;
+use regrasp_run::NeverStops;
+use regrasp_samplers as _;
+use regrasp_stability_tests as _;
+use regrasp_suite::{
+    Files, Options, Outcome, Problems, Protocol, Published, Replayed, Series, Trial, World, run,
+};
+use regrasp_surfaces as _;
+use std::sync::Mutex;
+
+/// Time stands still.
+struct Still;
+
+impl Clock for Still {
+    fn seconds(&self) -> f64 {
+        0.0
+    }
+}
+
+/// Turns of 60° on and on, and turns about random axes.
+fn protocol() -> Protocol {
+    let series = |name: &str, problems| Series {
+        name: name.into(),
+        scenario: "sphere".into(),
+        preset: None,
+        max_nodes: Some(20),
+        problems,
+        published: vec![Published {
+            what: "goals".into(),
+            figure: "1".into(),
+            world: World::Model,
+            method: "none".into(),
+        }],
+    };
+    let axis = [0.0, 0.0, 1.0];
+    let on_and_on = Problems::Continuing { trials: 1, most: 3, axis, step_deg: 60.0 };
+    let random = Problems::Random { count: 3, angle_deg: Some([10.0, 60.0]), displacement: [0.0, 0.005] };
+    Protocol {
+        title: String::new(),
+        paper: String::new(),
+        like: String::new(),
+        chosen: String::new(),
+        series: vec![series("on", on_and_on), series("random", random)],
+    }
+}
+
+fn trials(threads: usize, told: &(dyn Fn(&Trial, &[Plan]) + Sync)) -> Vec<Trial> {
+    let arrives = |_: &Plan| Ok(Replayed { arrived: true, distance: 0.0, angle: 0.0 });
+    let options = Options { threads, stop: &NeverStops, clock: &Still, judge: Some(&arrives), told };
+    run(&protocol(), &Files::BuiltIn(&[]), &Registry::linked().unwrap(), &options).unwrap()
+}
+
+#[test]
+fn trials_are_the_same_on_two_threads_and_counted() {
+    let one = trials(1, &|_, _| {});
+    assert_eq!(one, trials(2, &|_, _| {}));
+    assert_eq!(one.len(), 4);
+    let outcome = Outcome::of(&protocol().series[0], &[&one[0]]);
+    assert_eq!(outcome.chain.map(|chain| chain.mean), Some(3.0), "{one:?}");
+    assert_eq!(outcome.revolutions.map(|turns| turns.mean), Some(0.5));
+    assert_eq!(outcome.arrived, Some(3));
+}
+
+#[test]
+fn each_goal_of_a_chain_begins_where_the_one_before_ended() {
+    let chains = Mutex::new(Vec::new());
+    trials(1, &|trial, plans| {
+        if trial.series == 0 {
+            chains.lock().unwrap().push(plans.to_vec());
+        }
+    });
+    let plans = chains.into_inner().unwrap().remove(0);
+    assert_eq!(plans.len(), 3);
+    for pair in plans.windows(2) {
+        let end = pair[0].segments.last().unwrap().states.last().unwrap();
+        let begin = &pair[1].segments.first().unwrap().states[0];
+        // The start's grasp is given as points and joints, and made exact again: to a micrometre.
+        let apart = |k: usize| (end.object.position[k] - begin.object.position[k]).abs();
+        assert!((0..3).all(|k| apart(k) < 1e-9));
+        for (a, b) in end.joints.iter().flatten().zip(begin.joints.iter().flatten()) {
+            assert!((a - b).abs() < 1e-3, "{a} {b}");
+        }
+    }
+}

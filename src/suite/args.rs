@@ -1,0 +1,44 @@
+//! What `regrasp suite` takes.
+
+use crate::numbers::{seconds, whole};
+use crate::outputs::OverwriteArgs;
+use std::path::PathBuf;
+
+/// Run the problems of a published paper, and set the results beside the published ones.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Without a protocol the built-in ones are listed. Each says what is like for like and what is chosen here; a \
+row has the published figure, where that method works (a real hand, a simulation, a model), what is planned \
+and verified in our model, and what arrives when the plans are replayed in rapier. Where a trial is a chain \
+of goals, each is planned from where the one before has ended. The problems are always the same; times are \
+of this machine, and with more threads than idle cores they grow.\n\n\
+A folder with a file `protocol.toml` is a protocol, too. The folder of the output gets `summary.md` and \
+`results.json`, with `--keep-plans` also `plans/`.\n\n\
+Examples:\n  regrasp suite\n  regrasp suite sahbani-2007 -o sahbani\n  \
+regrasp suite drop --threads 2 --keep-plans -o drop\n  regrasp suite paper --no-replay -o paper")]
+pub struct SuiteArgs {
+    /// A built-in protocol (`paper` is `sahbani-2007`), or a folder with a file `protocol.toml`.
+    pub protocol: Option<String>,
+    /// Write the results to this folder.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Do not replay the plans.
+    #[arg(long)]
+    pub no_replay: bool,
+    /// Keep all plans, for `regrasp view`, and for the replay in MuJoCo by
+    /// `tests/outside/mujoco_replay.py`.
+    #[arg(long)]
+    pub keep_plans: bool,
+    /// Stop after this many seconds.
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
+    pub time_limit: Option<f64>,
+    /// Compute with this many threads, 1 to 256; all but the times is the same.
+    #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true,
+          value_parser = whole::<u16, 1, 256>)]
+    pub threads: u16,
+    #[command(flatten)]
+    pub overwrite: OverwriteArgs,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    pub json: bool,
+}

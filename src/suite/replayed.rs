@@ -1,0 +1,28 @@
+//! The replay of a plan, where the simulation is built in.
+
+use super::SuiteArgs;
+use regrasp::suite::Judge;
+
+/// Who replays; nobody where that was not wished, or the program has no simulation.
+#[cfg(not(feature = "rapier"))]
+pub fn judge(_: &SuiteArgs) -> Option<Judge<'static>> {
+    None
+}
+
+/// Who replays; nobody where that was not wished.
+#[cfg(feature = "rapier")]
+pub fn judge(args: &SuiteArgs) -> Option<Judge<'static>> {
+    (!args.no_replay).then_some(&replayed)
+}
+
+/// As `regrasp replay` does by default.
+#[cfg(feature = "rapier")]
+fn replayed(plan: &regrasp::plan::Plan) -> Result<regrasp::suite::Replayed, String> {
+    let report = crate::replay::by_default(plan).map_err(|failure| failure.message().to_owned())?;
+    let last = report.stages.last();
+    Ok(regrasp::suite::Replayed {
+        arrived: report.arrived,
+        distance: last.map_or(0.0, |stage| stage.end_distance),
+        angle: last.map_or(0.0, |stage| stage.end_angle),
+    })
+}
