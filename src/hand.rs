@@ -330,9 +330,9 @@ impl Understood<'_> {
                     finger.name.clone(),
                     format!("{:.1}", joint.lower.to_degrees()),
                     format!("{:.1}", joint.upper.to_degrees()),
-                    joint.velocity.to_string(),
-                    joint.acceleration.to_string(),
-                    joint.effort.to_string(),
+                    short(joint.velocity),
+                    short(joint.acceleration),
+                    short(joint.effort),
                     driver(joint),
                 ]);
             }
@@ -359,6 +359,11 @@ fn driver(joint: &JointDescription) -> String {
     let say =
         |mimic: &regrasp::api::Mimic| format!("{} × {} + {}", mimic.multiplier, mimic.joint, mimic.offset);
     joint.mimic.as_ref().map(say).unwrap_or_default()
+}
+
+/// A figure without the digits that conversions of units leave: 7.329, not 7.328999999999999.
+fn short(x: f64) -> String {
+    ((x * 1e4).round() / 1e4).to_string()
 }
 
 /// A heading and its lines; nothing where there are none.

@@ -5,6 +5,7 @@
 //! where those leave a doubt (a shell of the width of the object's faceting error) does parry3d decide. So
 //! the answers are exact: nothing free is refused because of a bound, and nothing close is passed.
 
+mod apart;
 mod block;
 mod body;
 mod convex;
@@ -12,6 +13,7 @@ mod exact;
 mod field;
 mod finger;
 mod fixed;
+mod hull;
 mod lone;
 mod object;
 mod report;
