@@ -1,6 +1,7 @@
 //! Whether two solids are farther apart than a given distance, which is cheaper than to know the distance.
 
-use super::exact::{self, MeshSolid, Solid, to_glam, to_parry};
+use super::border::{to_glam, to_parry};
+use super::exact::{self, MeshSolid, Solid};
 use super::hull::Hull;
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::query::gjk::{self, CsoPoint, GJKResult, VoronoiSimplex};

@@ -1,8 +1,9 @@
-//! Exact distances by parry3d: the one border between nalgebra and glam.
+//! Exact distances by parry3d.
 
+use super::border::{to_glam, to_parry};
 use super::hull::Hull;
 use super::rod::{Bounds, Rod};
-use parry3d_f64::math::{Pose as ParryPose, Rot3, Vector};
+use parry3d_f64::math::Pose as ParryPose;
 use parry3d_f64::query::{self, ClosestPoints, PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::{Ball, Capsule, ConvexPolyhedron, Cuboid, Segment, Shape, TriMesh, TriMeshFlags};
 use regrasp_api::{Mesh, Pose, Vec3};
@@ -243,13 +244,4 @@ impl<'a> Core<'a> {
             CoreShape::Polyhedron(shape) => *shape,
         }
     }
-}
-
-pub(super) fn to_glam(v: &Vec3) -> Vector {
-    Vector::new(v.x, v.y, v.z)
-}
-
-pub(super) fn to_parry(X: &Pose) -> ParryPose {
-    let q = X.rotation.quaternion();
-    ParryPose::from_parts(to_glam(&X.translation.vector), Rot3::from_xyzw(q.i, q.j, q.k, q.w))
 }

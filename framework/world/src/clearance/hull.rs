@@ -1,6 +1,6 @@
 //! Convex meshes by their corners: what is farthest in a direction is found by climbing along edges.
 
-use super::exact::to_glam;
+use super::border::to_glam;
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::SupportMap;
 use regrasp_api::Mesh;

@@ -8,6 +8,7 @@
 mod apart;
 mod block;
 mod body;
+mod border;
 mod convex;
 mod exact;
 mod field;
