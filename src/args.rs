@@ -28,6 +28,7 @@ pub enum Command {
     Verify(VerifyArgs),
     Compare(crate::compare::CompareArgs),
     View(crate::view::ViewArgs),
+    Serve(crate::serve::ServeArgs),
     Export(crate::export::ExportArgs),
     Grasps(crate::grasps::GraspsArgs),
     Roadmap(crate::roadmap::RoadmapArgs),

@@ -34,6 +34,7 @@ mod report;
 mod roadmap;
 mod scenarios;
 mod schema;
+mod serve;
 mod table;
 mod terminal;
 mod verify;
@@ -59,6 +60,7 @@ fn main() -> ExitCode {
         Command::Verify(args) => verify::run(args),
         Command::Compare(args) => compare::run(args),
         Command::View(args) => view::run(args),
+        Command::Serve(args) => serve::run(args),
         Command::Export(args) => export::run(args),
         Command::Grasps(args) => grasps::run(args),
         Command::Roadmap(args) => roadmap::run(args),
