@@ -2,6 +2,7 @@
 
 use crate::quantity::span;
 use crate::table::Table;
+use crate::terminal::{Paint, paint};
 use regrasp::study::compare::statistics::{quantile, sorted};
 use regrasp::study::compare::summary::{self, Finding};
 use regrasp::study::compare::{
@@ -30,7 +31,7 @@ fn said(study: &Study, k: usize, row: &[Cell<'_>], family: &Family) -> String {
         return String::new();
     }
     let lines: String = lines.iter().map(|line| format!("    {line}\n")).collect();
-    format!("\n  {}. {lead}\n{lines}", study.scenarios[k].name)
+    format!("\n  {}. {lead}\n{lines}", paint(Paint::Head, &study.scenarios[k].name))
 }
 
 fn stated(study: &Study, family: &Family) -> String {
@@ -64,7 +65,11 @@ fn table(rows: &[Vec<Cell<'_>>], family: &Family) -> String {
             of(cell.successes().count()),
             time(0.5),
             time(0.9),
-            against.map_or("-".to_owned(), summary::cell),
+            against.map_or("-".to_owned(), |found| match found.is_better() {
+                1 => paint(Paint::Good, &summary::cell(found)),
+                -1 => paint(Paint::Bad, &summary::cell(found)),
+                _ => summary::cell(found),
+            }),
             against.map_or("-".to_owned(), |found| p_value(found.p_holm)),
         ]);
     }

@@ -118,7 +118,9 @@ fn who_does_not_know_the_token_gets_nothing() {
         assert_eq!(status(method, path, host), expected, "{method} {path} of {host}");
     }
     let (head, _) = served.get("");
-    for part in ["Cache-Control: no-store", "Content-Security-Policy: default-src 'none'", "nosniff", "no-referrer"] {
+    for part in
+        ["Cache-Control: no-store", "Content-Security-Policy: default-src 'none'", "nosniff", "no-referrer"]
+    {
         assert!(head.contains(part), "{part}: {head}");
     }
     assert!(!head.to_ascii_lowercase().contains("access-control"), "no other page may read it");

@@ -40,8 +40,13 @@ pub(crate) fn controls(scene: &Scene<'_>, name: String) -> File {
 }
 
 fn motion_head(scene: &Scene<'_>) -> Vec<String> {
-    let object = ["x", "y", "z", "qw", "qx", "qy", "qz"].map(|name| format!("object.{name}"));
-    scene.names.joints.iter().flatten().cloned().chain(object).collect()
+    let joints = scene.names.joints.iter().flatten().map(|joint| format!("joint.{joint}"));
+    joints.chain(object_head()).collect()
+}
+
+/// The columns of the object's pose, the same in every table.
+pub(crate) fn object_head() -> [String; 7] {
+    ["x", "y", "z", "qw", "qx", "qy", "qz"].map(|name| format!("object.{name}"))
 }
 
 fn motion_cells(row: &Row<'_>) -> Vec<String> {

@@ -24,7 +24,9 @@ fn pairs_measures_and_band_are_chosen_and_told() {
     assert_eq!(said.code, 0, "{}", said.err);
     let first = verdicts(&desk);
     assert!(first.iter().all(|(pair, _, _)| pair.ends_with(" rlg")), "{first:?}");
-    for measure in ["solved", "planning_s", "verification_s", "regrasps", "duration_s", "margin", "clearance_m"] {
+    for measure in
+        ["solved", "planning_s", "verification_s", "regrasps", "duration_s", "margin", "clearance_m"]
+    {
         assert!(first.iter().any(|(_, other, _)| other == measure), "{measure}");
     }
     let text = format!("each variant against `rlg`, in every measure, on every scenario: {}", first.len());
@@ -55,7 +57,10 @@ fn pairs_measures_and_band_are_chosen_and_told() {
 fn two_studies_stand_side_by_side() {
     let desk = Desk::new();
     for folder in ["old", "new"] {
-        assert_eq!(desk.run(&format!("compare sphere --vary sampler=rlg,projection --seeds 3 -o {folder}")).code, 0);
+        assert_eq!(
+            desk.run(&format!("compare sphere --vary sampler=rlg,projection --seeds 3 -o {folder}")).code,
+            0
+        );
     }
     let said = desk.run("compare --against old -o new");
     assert_eq!(said.code, 0, "{}", said.err);
@@ -64,7 +69,10 @@ fn two_studies_stand_side_by_side() {
     let all = json["comparisons"].as_array().expect("a list");
     let regrasps = all.iter().filter(|one| one["measure"] == "regrasps");
     // The same seeds give the same plans.
-    assert!(regrasps.clone().count() == 2 && regrasps.clone().all(|one| one["difference"] == 0.0), "{json:#}");
+    assert!(
+        regrasps.clone().count() == 2 && regrasps.clone().all(|one| one["difference"] == 0.0),
+        "{json:#}"
+    );
     assert_eq!(csv(&desk.read("new/against.csv")).len(), 1 + all.len());
     desk.run("compare --against nowhere -o new").assert_fails(2, &["`nowhere`", "no `study.json`"]);
     assert_eq!(desk.run("compare cubic --seeds 1 -o other").code, 0);
