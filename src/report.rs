@@ -41,7 +41,7 @@ impl Summary<'_> {
             "seed": self.options.seed,
             "threads": self.options.threads,
             "goals": self.scenario.problem.goal.len(),
-            "goals_reached": run.outcome.goal_ends.len(),
+            "goals_reached": run.outcome.goal_ends,
             "time_s": run.planning_s,
             "verification_s": run.verification_s,
             "phases_s": statistics.time_s,

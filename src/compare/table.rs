@@ -82,7 +82,7 @@ fn planning(family: &Family, scenario: usize, variant: usize) -> Option<&Compari
         found.question == Question::Pair { a: variant, b: 0 }
             && found.measure == Measure::Figure(Figure::Planning)
     };
-    family.on(scenario).find(wanted)
+    family.on(scenario).iter().find(wanted)
 }
 
 fn p_value(p: f64) -> String {

@@ -138,10 +138,10 @@ fn read(stream: &TcpStream) -> io::Result<Option<Request>> {
         if line.is_empty() {
             return Ok(Some(Request { method: method.into(), target: target.into(), host }));
         }
-        if let Some((name, value)) = line.split_once(':') {
-            if name.eq_ignore_ascii_case("host") {
-                host = value.trim().to_owned();
-            }
+        if let Some((name, value)) = line.split_once(':')
+            && name.eq_ignore_ascii_case("host")
+        {
+            host = value.trim().to_owned();
         }
     }
     Ok(None)

@@ -79,3 +79,12 @@ fn two_studies_stand_side_by_side() {
     desk.run("compare --against old -o other").assert_fails(2, &["no scenario, variant and seed in common"]);
     desk.run("compare sphere --against old -o new").assert_fails(2, &["cannot be used with"]);
 }
+
+#[test]
+fn a_study_can_be_watched() {
+    let desk = Desk::new();
+    let said = desk.run("compare sphere --seeds 3 --watch -o study");
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(said.err.contains("the growing report: http://127.0.0.1:"), "{}", said.err);
+    assert!(desk.path("study/report.html").exists(), "the page ends with the study, the report stays");
+}

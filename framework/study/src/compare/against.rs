@@ -55,10 +55,9 @@ impl Against {
             }
             let name = scenario.name.replace(['\n', '\r', '<', '>'], "'");
             write!(text, "\n\n## {name}\n").expect("a text takes everything");
-            for question in questions {
-                let answers: Vec<_> = self.family.answers(k, question).collect();
+            for (question, answers) in questions {
                 let who = subject(&self.study, question, &|name| format!("`{}`", name.replace('`', "'")));
-                let said = line(answers.into_iter(), &self.family, self.study.hypotheses.band);
+                let said = line(answers, &self.family, self.study.hypotheses.band);
                 write!(text, "\n- {who}: {said}.").expect("a text takes everything");
             }
         }

@@ -98,24 +98,16 @@ pub struct Family {
 
 impl Family {
     /// The comparisons on a scenario.
-    pub fn on(&self, scenario: usize) -> impl Iterator<Item = &Comparison> + Clone {
-        self.comparisons.iter().filter(move |found| found.scenario == scenario)
+    pub fn on(&self, scenario: usize) -> &[Comparison] {
+        let begin = self.comparisons.partition_point(|found| found.scenario < scenario);
+        let end = self.comparisons.partition_point(|found| found.scenario <= scenario);
+        &self.comparisons[begin..end]
     }
 
-    /// The questions that were asked about a scenario, in their order.
-    pub fn questions(&self, scenario: usize) -> Vec<&Question> {
-        let mut all: Vec<&Question> = self.on(scenario).map(|found| &found.question).collect();
-        all.dedup();
-        all
-    }
-
-    /// The answers to one question about a scenario.
-    pub fn answers<'a>(
-        &'a self,
-        scenario: usize,
-        question: &'a Question,
-    ) -> impl Iterator<Item = &'a Comparison> {
-        self.on(scenario).filter(move |found| found.question == *question)
+    /// The questions that were asked about a scenario, in their order, each with its answers, one a measure.
+    pub fn questions(&self, scenario: usize) -> Vec<(&Question, &[Comparison])> {
+        let chunks = self.on(scenario).chunk_by(|a, b| a.question == b.question);
+        chunks.map(|answers| (&answers[0].question, answers)).collect()
     }
 }
 
@@ -218,7 +210,7 @@ mod tests {
     const PLANNING: Measure = Measure::Figure(Figure::Planning);
 
     fn planning(family: &Family, scenario: usize) -> Vec<&Comparison> {
-        family.on(scenario).filter(|found| found.measure == PLANNING).collect()
+        family.on(scenario).iter().filter(|found| found.measure == PLANNING).collect()
     }
 
     #[test]
@@ -293,7 +285,7 @@ mod tests {
         let many = family(&study, time);
         assert_eq!((few, many.tested), (4, 6));
         assert!(planning(&many, 0).iter().all(|found| found.is_shown()));
-        let pairs: Vec<&Question> = many.questions(0);
+        let pairs: Vec<&Question> = many.questions(0).into_iter().map(|(question, _)| question).collect();
         assert_eq!(
             pairs,
             [&Question::Pair { a: 1, b: 0 }, &Question::Pair { a: 2, b: 0 }, &Question::Pair { a: 2, b: 1 }]

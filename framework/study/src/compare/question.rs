@@ -153,14 +153,13 @@ pub(super) fn contrast(weighed: &[(&Seeds<'_>, f64)], measure: &Measure, horizon
         let values = weighed.iter().map(|(runs, weight)| Some(weight * measure.of(runs[seed], horizon_s)?));
         let Some(values) = values.collect::<Option<Vec<f64>>>() else { continue };
         numbers.push(snapped(&values));
-        match values.as_slice() {
-            [a, b] => match (*a != 0.0, *b != 0.0) {
+        if let [a, b] = values.as_slice() {
+            match (*a != 0.0, *b != 0.0) {
                 (true, true) => solved.both += 1,
                 (true, false) => solved.first += 1,
                 (false, true) => solved.second += 1,
                 (false, false) => solved.neither += 1,
-            },
-            _ => {}
+            }
         }
     }
     match (measure, weighed.len()) {

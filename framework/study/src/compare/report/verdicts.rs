@@ -35,15 +35,15 @@ struct Answer {
 /// The matrix of a scenario; `name` marks names.
 pub fn matrix(study: &Study, scenario: usize, family: &Family, name: &dyn Fn(&str) -> String) -> Matrix {
     let questions = family.questions(scenario);
-    let first = questions.first().into_iter().flat_map(|question| family.answers(scenario, question));
-    let measures = first.map(|found| found.measure.noun()).collect();
-    let row = |question: &&Question| Row {
+    let first = questions.first().map_or(&[][..], |(_, answers)| answers);
+    let measures = first.iter().map(|found| found.measure.noun()).collect();
+    let row = |(question, answers): &(&Question, &[Comparison])| Row {
         subject: subject(study, question, name),
         variants: match question {
             Question::Pair { a, b } => vec![*a, *b],
             _ => Vec::new(),
         },
-        answers: family.answers(scenario, question).map(answer).collect(),
+        answers: answers.iter().map(answer).collect(),
     };
     Matrix { measures, rows: questions.iter().map(row).collect() }
 }
@@ -75,7 +75,7 @@ pub fn best(row: &[Cell<'_>], scenario: usize, family: &Family) -> Vec<usize> {
         let is_time = |found: &&Comparison| {
             matches!(found.measure, Measure::Solved | Measure::Figure(Figure::Planning))
         };
-        let mut all = family.on(scenario).filter(between).filter(is_time).peekable();
+        let mut all = family.on(scenario).iter().filter(between).filter(is_time).peekable();
         all.peek().is_some() && all.all(|found| !found.is_shown())
     };
     let equals = solvers.map(|cell| cell.index).filter(|&other| other != first.index && is_tie(other));

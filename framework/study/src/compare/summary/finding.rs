@@ -30,13 +30,11 @@ pub fn finding(
 ) -> Finding {
     let mut lead: Vec<String> = row.iter().filter_map(|cell| unverified(cell, name)).collect();
     let questions = family.questions(scenario);
-    let told = |question: &Question| {
-        let answers: Vec<&Comparison> = family.answers(scenario, question).collect();
-        let line = line(answers.into_iter(), family, study.hypotheses.band);
-        format!("{}: {line}.", subject(study, question, name))
+    let told = |(question, answers): (&Question, &[Comparison])| {
+        format!("{}: {}.", subject(study, question, name), line(answers, family, study.hypotheses.band))
     };
-    let (pairs, effects): (Vec<&Question>, Vec<&Question>) =
-        questions.iter().partition(|question| matches!(question, Question::Pair { .. }));
+    let (pairs, effects): (Vec<_>, Vec<_>) =
+        questions.into_iter().partition(|(question, _)| matches!(question, Question::Pair { .. }));
     let mut lines = Vec::new();
     match row.split_first() {
         None => lead.push("There are no runs yet.".into()),
@@ -96,7 +94,7 @@ fn brief(cell: &Cell<'_>) -> String {
 
 /// For each measure how many pairs have which verdict, where there are too many to tell each.
 fn counted(family: &Family, scenario: usize) -> Vec<String> {
-    let pairs = || family.on(scenario).filter(|found| matches!(found.question, Question::Pair { .. }));
+    let pairs = || family.on(scenario).iter().filter(|found| matches!(found.question, Question::Pair { .. }));
     let mut measures: Vec<&Measure> = Vec::new();
     for found in pairs() {
         if !measures.contains(&&found.measure) {

@@ -52,7 +52,7 @@ fn section(study: &Study, k: usize, row: &[Cell<'_>], family: &Family) -> String
 fn differences(study: &Study, k: usize, family: &Family) -> String {
     let head = ["", "measure", "seeds", "difference (interval)", "verdict", "p"];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
-    lines.extend(family.on(k).map(|found| {
+    lines.extend(family.on(k).iter().map(|found| {
         vec![
             subject(study, &found.question, &code),
             plain(&found.measure.noun()),

@@ -114,10 +114,10 @@ pub fn subject(study: &Study, question: &Question, name: &dyn Fn(&str) -> String
 
 /// All answers to one question in one line: what is shown, what is practically the same, what is not shown,
 /// what could not be.
-pub fn line<'a>(answers: impl Iterator<Item = &'a Comparison> + Clone, family: &Family, band: f64) -> String {
-    let mut parts: Vec<String> = answers.clone().filter_map(clause).collect();
+pub fn line(answers: &[Comparison], family: &Family, band: f64) -> String {
+    let mut parts: Vec<String> = answers.iter().filter_map(clause).collect();
     let nouns = |verdict: Verdict| {
-        let wanted = answers.clone().filter(|found| found.verdict == verdict);
+        let wanted = answers.iter().filter(|found| found.verdict == verdict);
         wanted.map(|found| found.measure.noun()).collect::<Vec<_>>().join(", ")
     };
     let heads = [
