@@ -41,8 +41,8 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     let (scenarios, draft) = request(args, &registry)?;
     if draft.hypotheses.pairs == Pairs::All && draft.variants.len() > MOST_IN_PAIRS {
         return Err(Failure::bad_input(format!(
-            "`--pairs all` compares at most {MOST_IN_PAIRS} variants, and there are {}; vary less, or compare \
-             each with the first",
+            "`--pairs all` compares at most {MOST_IN_PAIRS} variants, and there are {}; vary less, or \
+             compare each with the first",
             draft.variants.len()
         )));
     }

@@ -15,8 +15,8 @@ use regrasp::study::compare;
 use schema::{Chapter, Page};
 use std::path::PathBuf;
 
-/// Write the generated pages of the book's reference (plugins, scenario files, study files, commands), and bring
-/// the listings of its other pages up to date.
+/// Write the generated pages of the book's reference (plugins, scenario files, study files, commands), and
+/// bring the listings of its other pages up to date.
 #[derive(Debug, Args)]
 #[command(hide = true, after_help = "Example:\n  regrasp reference book/src/reference")]
 pub struct ReferenceArgs {

@@ -31,7 +31,7 @@ The page shows the plan as `regrasp view` does, of a robot's file the hand as `r
 Where the file cannot be read or planned, it says so with file, line and key, over what it showed last. \
 The server answers on the loopback address of this machine alone, and only to who knows the token in the \
 address that it prints; Ctrl-C ends it.\n\n\
-Examples:\n  regrasp new mine.toml --yes && regrasp serve mine.toml\n  regrasp serve my_hand.urdf")]
+Examples:\n  regrasp serve mine.toml\n  regrasp serve my_hand.urdf")]
 pub struct ServeArgs {
     /// A scenario file, the name of a built-in scenario, or a robot's file (URDF, MJCF, xacro).
     pub file: String,

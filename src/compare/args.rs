@@ -48,7 +48,8 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 1, MOST_SEEDS>)]
     pub seeds: Option<u64>,
     /// The first of the seeds [default: 0].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 0, { u64::MAX - MOST_SEEDS }>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true,
+          value_parser = whole::<u64, 0, { u64::MAX - MOST_SEEDS }>)]
     pub first_seed: Option<u64>,
     /// Choose plugins and settings of all variants that belong together, `paper` or `default`; `--use`,
     /// `--set` and `--vary` change them.
@@ -107,15 +108,15 @@ pub struct CompareArgs {
     pub shard: Option<Shard>,
     /// Join the parts in these folders.
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = [
-        "scenarios", "suite", "study", "vary", "seeds", "first_seed", "preset", "uses", "sets", "load", "time_limit", "max_nodes",
-        "threads", "skip_unsupported", "shard",
+        "scenarios", "suite", "study", "vary", "seeds", "first_seed", "preset", "uses", "sets", "load",
+        "time_limit", "max_nodes", "threads", "skip_unsupported", "shard",
     ])]
     pub merge: Vec<PathBuf>,
     /// Set the finished study in the output folder beside this older one: another commit, another machine. No
     /// run is made; the folder gets `against.csv` and `against.md`.
     #[arg(long, value_name = "DIR", conflicts_with_all = [
-        "scenarios", "suite", "study", "vary", "seeds", "first_seed", "preset", "uses", "sets", "load", "time_limit", "max_nodes",
-        "threads", "skip_unsupported", "shard", "merge", "pairs", "watch",
+        "scenarios", "suite", "study", "vary", "seeds", "first_seed", "preset", "uses", "sets", "load",
+        "time_limit", "max_nodes", "threads", "skip_unsupported", "shard", "merge", "pairs", "watch",
     ])]
     pub against: Option<PathBuf>,
     /// The folder of the study. If the same command began it before, the command continues it.

@@ -10,7 +10,8 @@ pub fn page(mut program: Command) -> String {
     text += "Every command has `--help`, which says the same as this page. What went wrong is said on \
         standard error; standard output has the \
              results alone. Every command takes `--color auto|always|never`: `auto` colours what goes to a \
-             terminal, and heeds `NO_COLOR`, `CLICOLOR` and `CLICOLOR_FORCE`. [Exit codes](exit-codes.md) tell a script how a command ended.\n\n";
+             terminal, and heeds `NO_COLOR`, `CLICOLOR` and `CLICOLOR_FORCE`. [Exit codes](exit-codes.md) tell a \
+             script how a command ended.\n\n";
     let shown =
         || program.get_subcommands().filter(|command| !command.is_hide_set() && command.get_name() != "help");
     let rows: Vec<Vec<String>> =

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::time::SystemTime;
 
-/// What a file looks like from outside: when it was changed, and how long it is; `None` where it is not there.
+/// What a file looks like from outside: when it was changed, and how long it is; `None` where there is none.
 type Look = Option<(SystemTime, u64)>;
 
 /// Files that are looked at again and again.

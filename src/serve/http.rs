@@ -24,8 +24,8 @@ const STEP: Duration = Duration::from_millis(10);
 
 /// What pages may do: nothing that leaves this machine. They hold their scripts and styles within.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' blob: data:; style-src 'unsafe-inline'; \
-    img-src data: blob:; media-src blob:; worker-src blob:; connect-src 'self' data: blob:; frame-src 'self'; \
-    frame-ancestors 'self'; base-uri 'none'; form-action 'none'";
+    img-src data: blob:; media-src blob:; worker-src blob:; connect-src 'self' data: blob:; \
+    frame-src 'self'; frame-ancestors 'self'; base-uri 'none'; form-action 'none'";
 
 /// A listener on the loopback address.
 pub struct Server {

@@ -16,7 +16,7 @@ pub struct Page {
     pub tables: Vec<(usize, String)>,
     /// The blocks that a comment says to be printed by a command.
     pub outputs: Vec<Output>,
-    /// What `{{#include …}}` names, with the line it stands in: mdBook alone shows it, so that no page has any.
+    /// What `{{#include …}}` names, with the line it stands in: mdBook alone shows it: no page has any.
     pub includes: Vec<(usize, String)>,
     /// The blocks that a comment says to be a piece of a file.
     pub listings: Vec<Listing>,

@@ -161,8 +161,8 @@ fn walk(root: &Path, folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// The lines of a piece of a file, without the marks of anchors: all where `part` is empty, of an anchor, or of
-/// a range of lines counted from 1.
+/// The lines of a piece of a file, without the marks of anchors: all where `part` is empty, of an anchor, or
+/// of a range of lines counted from 1.
 fn piece(text: &str, part: &str) -> String {
     let is_mark = |line: &str| line.contains("ANCHOR:") || line.contains("ANCHOR_END:");
     let ends = |line: &str, mark: &str| line.split_once(mark).is_some_and(|(_, name)| name.trim() == part);

@@ -66,7 +66,10 @@ impl Served {
 #[test]
 fn the_page_follows_its_file_and_shows_errors_at_their_line() {
     let desk = Desk::new();
+    let built_in = "builtin = \"four-finger\"";
     let text = desk.run("scenarios sphere").out;
+    assert!(text.contains(built_in));
+    let text = text.replace(built_in, "file = \"hand.toml\"");
     desk.write("mine.toml", &text);
     desk.write("hand.toml", desk.run("scenarios four-finger").out);
     let served = serve(&desk, &["serve", "mine.toml", "--no-open"]);

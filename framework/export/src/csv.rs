@@ -1,7 +1,6 @@
 //! A table with one row a state, as comma-separated values (RFC 4180).
 
-use crate::table::Row;
-use crate::trajectory::object_head;
+use crate::table::{Row, object_head};
 use crate::{File, Scene};
 
 /// One file: columns in the order of [`head`]; a cell is empty where there is nothing to say, such as the

@@ -2,8 +2,8 @@
 //!
 //! The node `hand` has the plan's frame H, z upwards; the node `world` above it turns z to glTF's y. Each
 //! joint is a node that turns or slides inside a fixed node that places it, so that linear interpolation of
-//! its keys is the plan's motion. Nodes and meshes are called after what they are: the palm, links, fingertips, the
-//! object, obstacles. Numbers are 32-bit: at a hand's size 1e-8 m.
+//! its keys is the plan's motion. Nodes and meshes are called after what they are: the palm, links,
+//! fingertips, the object, obstacles. Numbers are 32-bit: at a hand's size 1e-8 m.
 //!
 //! The Khronos Group, "glTF 2.0 specification", 2021.
 

@@ -1,7 +1,7 @@
 //! The joints over time as a table, beside models of the hand.
 
 use crate::csv::Table;
-use crate::table::Row;
+use crate::table::{Row, object_head};
 use crate::{File, Scene};
 use regrasp_api::{FingerIndex, JointKind};
 
@@ -42,11 +42,6 @@ pub(crate) fn controls(scene: &Scene<'_>, name: String) -> File {
 fn motion_head(scene: &Scene<'_>) -> Vec<String> {
     let joints = scene.names.joints.iter().flatten().map(|joint| format!("joint.{joint}"));
     joints.chain(object_head()).collect()
-}
-
-/// The columns of the object's pose, the same in every table.
-pub(crate) fn object_head() -> [String; 7] {
-    ["x", "y", "z", "qw", "qx", "qy", "qz"].map(|name| format!("object.{name}"))
 }
 
 fn motion_cells(row: &Row<'_>) -> Vec<String> {

@@ -4,7 +4,8 @@ use super::{RunRecord, Study, analyse, judge_all, ompl, plan_path, report, summa
 use std::path::{Path, PathBuf};
 
 /// Every file that is made from the runs, with its path in the study's folder: `summary.csv`,
-/// `comparisons.csv`, `summary.md`, `report.html`, and for each scenario a log for OMPL's tools. Equal runs give equal files.
+/// `comparisons.csv`, `summary.md`, `report.html`, and for each scenario a log for OMPL's tools.
+/// Equal runs give equal files.
 ///
 /// The report's pictures come from the plans that the folder keeps; it does without those that are not there.
 pub fn derived_files(folder: &Path, study: &Study, records: &[RunRecord]) -> Vec<(PathBuf, String)> {

@@ -111,8 +111,8 @@ pub enum StudyError {
     Merge(String),
     /// Two studies have no scenario, variant and seed in common.
     #[error(
-        "`{}` and `{}` have no scenario, variant and seed in common, by their names; compare studies of the same \
-         command",
+        "`{}` and `{}` have no scenario, variant and seed in common, by their names; compare studies of the \
+         same command",
         folder.display(),
         older.display()
     )]

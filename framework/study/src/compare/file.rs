@@ -41,9 +41,9 @@ pub struct StudyFile {
     pub pairs: Option<Pairs>,
     /// What they are compared in; everything that the runs have where empty.
     pub measures: Vec<MeasureName>,
-    /// Differences within this share of the first variant's median count as practically none (%); 10 where
-    /// absent.
-    #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "%"))]
+    /// Differences within this share of the first variant's median, in percent, count as practically none; 10
+    /// where absent.
+    #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "1"))]
     pub equivalence: Option<f64>,
     /// Plugins for all variants, where these do not choose others.
     pub plugins: PluginTables,

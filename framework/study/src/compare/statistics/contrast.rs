@@ -105,7 +105,8 @@ mod tests {
             let Estimate { value, low, high } = contrast.estimate(alpha).unwrap();
             prop_assert!(low <= value && value <= high);
             match contrast.p_value() < alpha {
-                true => prop_assert!(low >= 0.0 && contrast.leaning() > 0.0 || high <= 0.0 && contrast.leaning() < 0.0),
+                true if contrast.leaning() > 0.0 => prop_assert!(low >= 0.0),
+                true => prop_assert!(high <= 0.0 && contrast.leaning() < 0.0),
                 false => prop_assert!(low <= 0.0 && high >= 0.0),
             }
         }

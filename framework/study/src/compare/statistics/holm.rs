@@ -59,7 +59,10 @@ mod tests {
 
     proptest! {
         #[test]
-        fn refused_below_its_level_and_nowhere_else(p in prop::collection::vec(0.0..0.1_f64, 1..12), others in 0_usize..5) {
+        fn refused_below_its_level_and_nowhere_else(
+            p in prop::collection::vec(0.0..0.1_f64, 1..12),
+            others in 0_usize..5,
+        ) {
             let (levels, _) = holm_levels(&p, others, 0.05);
             for ((corrected, alone), level) in holm(&p).into_iter().zip(&p).zip(levels) {
                 prop_assert_eq!(corrected < 0.05, *alone < level);
@@ -67,7 +70,9 @@ mod tests {
         }
 
         #[test]
-        fn never_kinder_than_alone_nor_harder_than_bonferroni(p in prop::collection::vec(0.0..1.0_f64, 1..12)) {
+        fn never_kinder_than_alone_nor_harder_than_bonferroni(
+            p in prop::collection::vec(0.0..1.0_f64, 1..12),
+        ) {
             for (corrected, alone) in holm(&p).into_iter().zip(&p) {
                 prop_assert!(*alone <= corrected && corrected <= (alone * p.len() as f64).min(1.0));
             }

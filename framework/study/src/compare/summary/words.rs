@@ -155,8 +155,8 @@ pub fn family_text(study: &Study, family: &Family, name: &dyn Fn(&str) -> String
         false => "",
     };
     format!(
-        "One family of hypotheses: {pairs}{effects}, in every measure, on every scenario: {all}, of which {} could \
-         be told apart by a test and are corrected together (Holm). A difference counts as shown below p = \
+        "One family of hypotheses: {pairs}{effects}, in every measure, on every scenario: {all}, of which {} \
+         could be told apart by a test and are corrected together (Holm). A difference counts as shown below p = \
          0.05; as practically none within {} of the first variant's median.",
         family.tested,
         percent(study.hypotheses.band)
