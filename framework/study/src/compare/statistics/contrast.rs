@@ -30,6 +30,14 @@ impl Contrast {
         }
     }
 
+    /// The largest size of a difference.
+    fn largest(&self) -> f64 {
+        match self {
+            Self::Numbers(all) => all.iter().fold(0.0, |most, difference| difference.abs().max(most)),
+            Self::Shares(_) => 1.0,
+        }
+    }
+
     /// The p-value, two-sided, as if this were the only test.
     pub fn p_value(&self) -> f64 {
         match self {
@@ -64,7 +72,9 @@ impl Contrast {
             Self::Numbers(differences) => hodges_lehmann_at(differences, alpha)?,
             Self::Shares(solved) => paired_difference(*solved, alpha)?,
         };
-        let Estimate { value, low, high } = found;
+        // Bisection ends beside a zero, not on it.
+        let size = self.largest();
+        let Estimate { value, low, high } = found.map(|x| if x.abs() <= 1e-12 * size { 0.0 } else { x });
         if self.p_value() >= alpha {
             return Some(Estimate { value, low: low.min(0.0), high: high.max(0.0) });
         }
@@ -89,6 +99,12 @@ mod tests {
         let (shares, numbers) = (Contrast::Shares(solved), Contrast::Numbers(numbers));
         assert!((shares.p_value() - numbers.p_value()).abs() < 1e-12);
         assert_eq!((shares.pairs(), shares.sides()), (numbers.pairs(), numbers.sides()));
+    }
+
+    #[test]
+    fn no_difference_at_the_middle_is_exactly_none() {
+        let contrast = Contrast::Numbers([[1.0; 4], [0.0; 4], [-1.0; 4]].concat());
+        assert_eq!(contrast.estimate(0.05).unwrap().value, 0.0);
     }
 
     #[test]
