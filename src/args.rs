@@ -2,6 +2,7 @@
 
 use crate::numbers::{extent, objective, seconds, whole};
 use crate::outputs::OverwriteArgs;
+use crate::terminal::{When, when};
 use clap::{Args, Parser, Subcommand};
 use regrasp::api::Level;
 use regrasp::run::{Extent, Objective};
@@ -18,6 +19,10 @@ use std::path::PathBuf;
                   Example:\n  regrasp plan sphere -o plan.json && regrasp verify plan.json"
 )]
 pub struct Arguments {
+    /// Colour the report: on a terminal (`auto`, which heeds `NO_COLOR`, `CLICOLOR` and `CLICOLOR_FORCE`),
+    /// `always`, or `never`.
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", value_parser = when)]
+    pub color: When,
     #[command(subcommand)]
     pub command: Command,
 }
@@ -28,6 +33,7 @@ pub enum Command {
     Verify(VerifyArgs),
     Compare(crate::compare::CompareArgs),
     View(crate::view::ViewArgs),
+    Serve(crate::serve::ServeArgs),
     Export(crate::export::ExportArgs),
     Grasps(crate::grasps::GraspsArgs),
     Roadmap(crate::roadmap::RoadmapArgs),

@@ -304,7 +304,11 @@ class Plan:
         ]
 
     def to_frame(self) -> pandas.DataFrame:
-        """The states as a table: a row a state, indexed by time, with segment and kind; needs pandas."""
+        """The states as a table: a row a state, indexed by time, with segment and kind; needs pandas.
+
+        The object's pose stands in ``object.x`` to ``object.z`` and ``object.qw`` to ``object.qz``, as in the
+        tables of ``regrasp export``.
+        """
         import pandas
 
         segment = np.zeros(len(self.times), dtype=int)
@@ -314,8 +318,9 @@ class Plan:
             "segment": segment,
             "kind": [self.segments[number].kind for number in segment],
         }
-        columns |= dict(zip(("x", "y", "z"), self.positions.T, strict=True))
-        columns |= dict(zip(("qw", "qx", "qy", "qz"), self.orientations.T, strict=True))
+        columns |= dict(zip(("object.x", "object.y", "object.z"), self.positions.T, strict=True))
+        turned = ("object.qw", "object.qx", "object.qy", "object.qz")
+        columns |= dict(zip(turned, self.orientations.T, strict=True))
         columns |= dict(zip(self.joint_names, self.joints.T, strict=True))
         columns |= dict(
             zip((f"{name}/holds" for name in self.finger_names), self.contacts.holding.T, strict=True)
