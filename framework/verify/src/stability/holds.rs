@@ -9,6 +9,7 @@ use crate::verdict::{Check, Gauge};
 use nalgebra::Vector6;
 use regrasp_api::{HoldLoad, MAX_FINGERS, Vec3};
 use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, Holds, HoldsAt, Place};
+use std::cmp::Ordering;
 
 /// How far forces may be from balance, of the load.
 const BALANCED: f64 = 1e-6;
@@ -31,9 +32,20 @@ pub(crate) struct HoldsCheck {
     most_mass: Option<Extreme>,
     disturbance: Option<Extreme>,
     effort: Option<Extreme>,
+    /// The state last looked at, and what was found.
+    last: Option<(Here, Option<&'static str>, Figures)>,
+}
+
+/// A grasp with its forces, and the object's weight in O.
+#[derive(PartialEq)]
+struct Here {
+    held: Held,
+    forces: Forces,
+    weight_O: Vec3,
 }
 
 /// The figures of one state.
+#[derive(Clone, Copy)]
 struct Figures {
     friction: f64,
     mass: f64,
@@ -62,6 +74,7 @@ impl HoldsCheck {
             most_mass: None,
             disturbance: None,
             effort: None,
+            last: None,
         })
     }
 
@@ -83,11 +96,26 @@ impl HoldsCheck {
             Err(fault) => return self.gauge.fault(|| place(fault)),
         };
         let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
-        if let Some(fault) = self.fault(&held, &forces, &weight_O) {
+        let here = Here { held, forces, weight_O };
+        let (fault, figures) = self.look(here);
+        if let Some(fault) = fault {
             self.gauge.fault(|| place(fault));
         }
-        let figures = self.figures(&held, &forces, &weight_O);
         self.take(&figures, || leg.at(state));
+    }
+
+    /// What is wrong with the forces of a state, and its figures. In a regrasp all that holds rests: the state
+    /// is often the one just looked at.
+    fn look(&mut self, here: Here) -> (Option<&'static str>, Figures) {
+        if let Some((last, fault, figures)) = &self.last
+            && *last == here
+        {
+            return (*fault, *figures);
+        }
+        let fault = self.fault(&here.held, &here.forces, &here.weight_O);
+        let figures = self.figures(&here.held, &here.forces, &here.weight_O);
+        self.last = Some((here, fault, figures));
+        (fault, figures)
     }
 
     /// The forces that one state records, by themselves: the friction and the largest share of an effort that
@@ -209,17 +237,34 @@ impl HoldsCheck {
     }
 
     fn take(&mut self, figures: &Figures, place: impl Fn() -> Place) {
-        let worse = |kept: &mut Option<Extreme>, value: f64, larger: bool| {
-            let is_worse =
-                kept.as_ref().is_none_or(|k| if larger { value > k.value } else { value < k.value });
-            if is_worse && value.is_finite() {
-                *kept = Some(Extreme::new(value, place(), HoldsAt::EveryState));
+        let extreme = |value: f64| Some(Extreme::new(value, place(), HoldsAt::EveryState));
+        let [friction, effort, mass, disturbance] = self.kept();
+        for (kept, value, order) in [
+            (friction, figures.friction, LARGEST),
+            (effort, figures.effort, LARGEST),
+            (mass, figures.mass, SMALLEST),
+            (disturbance, figures.disturbance, SMALLEST),
+        ] {
+            if value.is_finite() && is_worse(kept, value, order) {
+                *kept = extreme(value);
             }
-        };
-        worse(&mut self.friction, figures.friction, true);
-        worse(&mut self.effort, figures.effort, true);
-        worse(&mut self.most_mass, figures.mass, false);
-        worse(&mut self.disturbance, figures.disturbance, false);
+        }
+    }
+
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, mut later: Self) {
+        let orders = [LARGEST, LARGEST, SMALLEST, SMALLEST];
+        for ((kept, later), order) in self.kept().into_iter().zip(later.kept()).zip(orders) {
+            if later.as_ref().is_some_and(|later| is_worse(kept, later.value, order)) {
+                *kept = later.take();
+            }
+        }
+        self.gauge.join(later.gauge);
+    }
+
+    /// Friction, effort, mass and disturbance.
+    fn kept(&mut self) -> [&mut Option<Extreme>; 4] {
+        [&mut self.friction, &mut self.effort, &mut self.most_mass, &mut self.disturbance]
     }
 
     /// The figures for the certificate.
@@ -235,6 +280,15 @@ impl HoldsCheck {
     pub(crate) fn check(self) -> Check {
         self.gauge.check()
     }
+}
+
+/// Of which figures the largest, and of which the smallest counts.
+const LARGEST: Ordering = Ordering::Greater;
+const SMALLEST: Ordering = Ordering::Less;
+
+/// Whether a value is worse than the one kept.
+fn is_worse(kept: &Option<Extreme>, value: f64, worse: Ordering) -> bool {
+    kept.as_ref().is_none_or(|kept| value.partial_cmp(&kept.value) == Some(worse))
 }
 
 /// The share of the friction that a force needs.
