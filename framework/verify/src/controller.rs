@@ -97,7 +97,8 @@ impl<'s> Step<'s> {
         Some(Self { from: &from.joints, change, slopes, along })
     }
 
-    /// How far each tip can be from the line (m), at any time; infinite where the progress may leave the step.
+    /// How far each tip can be from the line (m), at any time; infinite where the progress may leave the
+    /// step.
     ///
     /// What is not progress is f (1 - f)² e0 - f² (1 - f) e1 with the slopes' parts e0, e1 across the change:
     /// at most 4/27 (|e0| + |e1|), and the progress stays within the step where both its slopes lie between 0

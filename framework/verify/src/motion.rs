@@ -81,9 +81,9 @@ impl Motions {
 
     /// A point's path r in O is no chord: its length is at most the chord's plus half of the largest |r''|
     /// (time in samples). With r = Rᵀ (p - x), the object turning at an even ω and shifting at an even x',
-    /// |r''| ≤ |p''| + 2 ω |p' - x'| + ω² |p - x|. And of a chain whose joints move at even rates and turn by w
-    /// in sum, |p''| ≤ 3 w |p'|: axes and arms each turn with what is before them. Points between the ends of
-    /// a segment move no farther than these.
+    /// |r''| ≤ |p''| + 2 ω |p' - x'| + ω² |p - x|. And of a chain whose joints move at even rates and turn by
+    /// w in sum, |p''| ≤ 3 w |p'|: axes and arms each turn with what is before them. Points between the ends
+    /// of a segment move no farther than these.
     fn look(&self, scene: &Scene, body: usize, frames: &[Frames]) -> [f64; SAMPLES] {
         let ends = match &scene.bodies[body].core {
             _ if scene.bodies[body].body == Body::Object => return [0.0; SAMPLES],

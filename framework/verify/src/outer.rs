@@ -1,9 +1,9 @@
 //! Closest points on facets that bound a mesh as planes bound a convex solid: found without a search.
 //!
 //! Where all of the mesh lies below a facet's plane, a point above it that projects onto the facet has its
-//! closest point there: nothing of the mesh is above the plane. Beyond the edge of two such facets the closest
-//! point lies on the edge, if the point is behind neither: the direction to it is then a sum of the two
-//! normals, and no vertex lies farther that way than the edge.
+//! closest point there: nothing of the mesh is above the plane. Beyond the edge of two such facets the
+//! closest point lies on the edge, if the point is behind neither: the direction to it is then a sum of the
+//! two normals, and no vertex lies farther that way than the edge.
 
 use regrasp_api::{Mesh, Neighbor, Vec3};
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -128,7 +128,7 @@ mod tests {
             facets.extend([[k, next, next + 5], [k, next + 5, k + 5]]);
         }
         let block = Mesh::new(vertices, facets).unwrap();
-        let shape = regrasp_api::ObjectShape::Sphere { radius: 0.03 };
+        let shape = serde_json::json!({ "kind": "sphere", "radius": 0.03 });
         let description = serde_json::json!({ "shape": shape, "mass": 0.1, "friction": 0.5 });
         let ball = regrasp_world::load_object(&serde_json::from_value(description).unwrap()).unwrap();
         [ball.mesh, block]

@@ -1,8 +1,8 @@
 //! How far contacts slip from touch-down to lift, by the claimed law, and whether their points move
 //! continuously.
 //!
-//! Slip is a sum over segments, so it is taken in the order of the motion: what was seen of each contact comes
-//! as [`Event`]s from whoever looked at a stretch of the plan.
+//! Slip is a sum over segments, so it is taken in the order of the motion: what was seen of each contact
+//! comes as [`Event`]s from whoever looked at a stretch of the plan.
 
 use crate::hand::Chains;
 use crate::track::{Leg, SAMPLES};

@@ -106,8 +106,8 @@ impl Solid {
         at_end.unwrap_or_else(|| self.search_segment(p, q, near))
     }
 
-    /// The same where it is the end `p` that comes closest, and no search is needed: all of the mesh is on one
-    /// side of a plane, and `q` on the other.
+    /// The same where it is the end `p` that comes closest, and no search is needed: all of the mesh is on
+    /// one side of a plane, and `q` on the other.
     fn gap_at_end(&self, p: &Vec3, q: &Vec3, near: u32) -> Option<Gap> {
         let (point, facet) = self.outer.closest(&self.vertices, p, near)?;
         let away = p - point;

@@ -147,8 +147,8 @@ impl HoldingCheck {
         held
     }
 
-    /// The slack with which the grasp is proved to hold the load; `Err` gives what could not be proved. Forces
-    /// that are known to hold the weight may hold more.
+    /// The slack with which the grasp is proved to hold the load; `Err` gives what could not be proved.
+    /// Forces that are known to hold the weight may hold more.
     fn prove(&mut self, held: &Held, weight_O: &Vec3, known: Option<&Forces>) -> Result<f64, f64> {
         let grasp = Grasp {
             held,
