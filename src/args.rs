@@ -195,10 +195,13 @@ pub struct LibraryArgs {
 
 /// Check a plan file with the independent verifier.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  regrasp verify plan.json")]
+#[command(after_help = "Examples:\n  regrasp verify plan.json\n  regrasp verify plan.json --threads 1")]
 pub struct VerifyArgs {
     /// A plan file.
     pub plan: PathBuf,
+    /// Look with this many threads, 1 to 256; the verdict is the same. By default as many as there are cores.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16, 1, 256>)]
+    pub threads: Option<u16>,
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub json: bool,

@@ -11,10 +11,12 @@ use regrasp::page::place_text;
 use regrasp::plan::Extreme;
 use regrasp::verify::Check;
 use serde_json::json;
+use std::thread;
 
 pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let plan = regrasp::plan::read(&args.plan).map_err(Failure::refused)?;
-    let verdict = regrasp::verify::verify(&plan);
+    let cores = || thread::available_parallelism().map_or(1, usize::from);
+    let verdict = regrasp::verify::verify_on(&plan, args.threads.map_or_else(cores, usize::from));
     if args.json {
         say_json(&json!(verdict))?;
     } else {

@@ -20,8 +20,8 @@ const LEAST_SHARE: f64 = 1e-8;
 const LEAST_SINGULAR: f64 = 1e-6;
 /// The part of the solver's least share below which carried shares are no longer taken.
 const DWINDLED: f64 = 0.4;
-/// Grasps not proved stable after which no more are looked at: the plan is refused anyway.
-const MOST_FAILURES: usize = 100;
+/// Grasps of a stretch not proved stable after which no more are looked at: the plan is refused anyway.
+const MOST_FAILURES: usize = 20;
 
 /// Follows the grasp along the plan, state by state: between two of them no cones are recorded.
 pub(crate) struct ConesCheck {
@@ -158,6 +158,15 @@ impl ConesCheck {
         let proof = prove(columns, &socp::best_shares(columns)?)?;
         self.carried = Some((proof.shares.clone(), proof.least));
         Some(proof)
+    }
+
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, later: Self) {
+        self.gauge.join(later.gauge);
+        let is_worse = |later: &Extreme| self.worst.as_ref().is_none_or(|worst| later.value < worst.value);
+        if later.worst.as_ref().is_some_and(is_worse) {
+            self.worst = later.worst;
+        }
     }
 
     /// The smallest margin, for the certificate.

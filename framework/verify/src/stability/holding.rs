@@ -13,8 +13,8 @@ use nalgebra::Vector6;
 use regrasp_api::{HoldLoad, MAX_FINGERS, Vec3};
 use regrasp_plan::{Claims, ConeClaim, Place};
 
-/// Grasps not proved to hold after which no more are looked at: the plan is refused anyway.
-const MOST_FAILURES: usize = 100;
+/// Grasps of a stretch not proved to hold after which no more are looked at: the plan is refused anyway.
+const MOST_FAILURES: usize = 20;
 /// The part of the solver's slack below which carried forces are no longer taken.
 const DWINDLED: f64 = 0.4;
 
@@ -32,6 +32,23 @@ pub(crate) struct HoldingCheck {
     solved: f64,
     failures: usize,
     last: Option<(Held, Vec3)>,
+}
+
+/// A grasp with what is worked out once for all that it must hold.
+struct Grasp<'h> {
+    held: &'h Held,
+    /// For each contact and joint behind it, see [`HoldingCheck::shares`].
+    shares: Vec<Vec<(f64, Vec3, f64)>>,
+    correction: Correction,
+}
+
+impl Grasp<'_> {
+    /// How fast an effort's share grows with a force, at most.
+    fn steepest(&self) -> f64 {
+        let each = self.shares.iter().flatten();
+        each.map(|(normal, tangential, spin)| normal.abs() + tangential.norm() + spin.abs())
+            .fold(0.0, f64::max)
+    }
 }
 
 impl HoldingCheck {
@@ -63,12 +80,6 @@ impl HoldingCheck {
             failures: 0,
             last: None,
         })
-    }
-
-    /// Starts a segment: the contacts change, so no forces are carried over.
-    pub(crate) fn start(&mut self) {
-        self.carried = None;
-        self.last = None;
     }
 
     /// Takes in one sample, with where everything is and where the fingers touch.
@@ -107,8 +118,7 @@ impl HoldingCheck {
     ) -> Result<f64, f64> {
         let held = self.held(leg, hand, frames, touches);
         let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
-        self.start();
-        self.solved = 0.0;
+        (self.carried, self.last, self.solved) = (None, None, 0.0);
         let is_known = forces_O.len() == held.contacts.len() && self.cone.mu > 0.0;
         let known = is_known.then(|| {
             let given: Vec<Vec3> = forces_O.iter().map(|force| force / self.unit).collect();
@@ -137,19 +147,23 @@ impl HoldingCheck {
         held
     }
 
-    /// The slack with which the grasp is proved to hold the load; `Err` gives what could not be proved. Forces
-    /// that are known to hold the weight may hold more.
+    /// The slack with which the grasp is proved to hold the load; `Err` gives what could not be proved.
+    /// Forces that are known to hold the weight may hold more.
     fn prove(&mut self, held: &Held, weight_O: &Vec3, known: Option<&Forces>) -> Result<f64, f64> {
-        let correction = Correction::new(&held.contacts).ok_or(f64::NEG_INFINITY)?;
+        let grasp = Grasp {
+            held,
+            shares: self.shares(held),
+            correction: Correction::new(&held.contacts).ok_or(f64::NEG_INFINITY)?,
+        };
         let wanted = self.wanted(weight_O);
         if let Some(carried) = self.carried.take()
-            && let Ok(slack) = self.check(held, &correction, carried, &wanted)
+            && let Ok(slack) = self.check(&grasp, carried, &wanted)
             && slack > DWINDLED * self.solved
         {
             return Ok(slack);
         }
-        let forces = self.solve(held, &correction, &wanted, known)?;
-        self.solved = self.check(held, &correction, forces, &wanted)?;
+        let forces = self.solve(&grasp, &wanted, known)?;
+        self.solved = self.check(&grasp, forces, &wanted)?;
         Ok(self.solved)
     }
 
@@ -157,11 +171,11 @@ impl HoldingCheck {
     /// often hold another one too, brought to its wrench.
     fn solve(
         &self,
-        held: &Held,
-        correction: &Correction,
+        grasp: &Grasp<'_>,
         wanted: &[Vector6<f64>],
         known: Option<&Forces>,
     ) -> Result<Vec<Forces>, f64> {
+        let Grasp { held, correction, .. } = grasp;
         let most = self.load.max_normal_force.map(|most| most / self.unit);
         // Known ones are taken as they are: they were not chosen for their slack.
         let mut solved: Vec<(Forces, f64)> = known.map(|forces| (*forces, 0.0)).into_iter().collect();
@@ -171,7 +185,7 @@ impl HoldingCheck {
             let enough = enough.max(LEAST_SLACK);
             let brought = |(forces, _): &(Forces, f64)| correction.towards(&held.contacts, forces, wanted);
             let mut known = solved.iter().rev().map(brought);
-            all.push(match known.find(|forces| self.least_slack(held, forces) > enough) {
+            all.push(match known.find(|forces| self.least_slack(grasp, forces) > enough) {
                 Some(forces) => forces,
                 None => {
                     let best = socp::best_within(held, self.length, self.unit, most, wanted);
@@ -184,8 +198,9 @@ impl HoldingCheck {
         Ok(all)
     }
 
-    fn least_slack(&self, held: &Held, forces: &Forces) -> f64 {
-        (0..held.contacts.len()).map(|i| self.slack(held, i, forces)).fold(f64::INFINITY, f64::min)
+    fn least_slack(&self, grasp: &Grasp<'_>, forces: &Forces) -> f64 {
+        let count = grasp.held.contacts.len();
+        (0..count).map(|i| self.slack(grasp, i, forces)).fold(f64::INFINITY, f64::min)
     }
 
     /// The wrenches that the contacts must give, over the unit.
@@ -208,20 +223,20 @@ impl HoldingCheck {
     /// gives the slack that is too little.
     fn check(
         &mut self,
-        held: &Held,
-        correction: &Correction,
+        grasp: &Grasp<'_>,
         mut forces: Vec<Forces>,
         wanted: &[Vector6<f64>],
     ) -> Result<f64, f64> {
+        let Grasp { held, correction, .. } = grasp;
         let mut least = f64::INFINITY;
-        let steepest = 1.0 + self.steepest(held);
+        let steepest = 1.0 + grasp.steepest();
         for (forces, wanted) in forces.iter_mut().zip(wanted) {
             *forces = correction.towards(&held.contacts, forces, wanted);
             let mut residual = -wanted;
             let mut slack = f64::INFINITY;
             for (i, contact) in held.contacts.iter().enumerate() {
                 residual += contact.wrench(&forces[i]);
-                slack = slack.min(self.slack(held, i, forces));
+                slack = slack.min(self.slack(grasp, i, forces));
             }
             // What balances the residual exactly is smaller than residual/singular, and must leave neither
             // cones nor efforts.
@@ -234,31 +249,31 @@ impl HoldingCheck {
         Ok(least)
     }
 
+    /// What a joint's effort, over its limit, is of each part of the force at its contact.
+    fn shares(&self, held: &Held) -> Vec<Vec<(f64, Vec3, f64)>> {
+        let each = held.contacts.iter().zip(&held.rows);
+        each.map(|(contact, rows)| rows.iter().map(|row| row.of(contact, self.length, self.unit)).collect())
+            .collect()
+    }
+
     /// The room of one contact's force: to its cone, to the largest normal force, and of its joints' efforts
     /// (of the limit).
-    fn slack(&self, held: &Held, i: usize, forces: &Forces) -> f64 {
-        let (contact, force) = (&held.contacts[i], &forces[i]);
+    fn slack(&self, grasp: &Grasp<'_>, i: usize, forces: &Forces) -> f64 {
+        let force = &forces[i];
         let mut slack = force.slack();
         if let Some(most) = self.load.max_normal_force {
             slack = slack.min(most / self.unit - force.normal);
         }
-        for row in &held.rows[i] {
-            let (normal, tangential, spin) = row.of(contact, self.length, self.unit);
+        for (normal, tangential, spin) in &grasp.shares[i] {
             let share = normal * force.normal + tangential.dot(&force.tangential) + spin * force.spin;
             slack = slack.min(1.0 - share.abs());
         }
         slack
     }
 
-    /// How fast an effort's share grows with a force, at most.
-    fn steepest(&self, held: &Held) -> f64 {
-        let each = held.contacts.iter().zip(&held.rows).flat_map(|(contact, rows)| {
-            rows.iter().map(|row| {
-                let (normal, tangential, spin) = row.of(contact, self.length, self.unit);
-                normal.abs() + tangential.norm() + spin.abs()
-            })
-        });
-        each.fold(0.0, f64::max)
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, later: Self) {
+        self.gauge.join(later.gauge);
     }
 
     pub(crate) fn check_made(self) -> Check {

@@ -23,10 +23,12 @@ use load::LoadCheck;
 use regrasp_api::{MAX_FINGERS, Rotation, Vec3};
 use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, HoldsAt, Place};
 
-/// Grasps not proved stable after which no more are looked at: the plan is refused anyway.
-const MOST_FAILURES: usize = 100;
+/// Grasps of a stretch not proved stable after which no more are looked at: the plan is refused anyway.
+const MOST_FAILURES: usize = 20;
 /// Grasps of smallest margin for which the best force is sought again: each one's bound can only rise.
 const MOST_REFINEMENTS: usize = 24;
+/// Where the best force raises a bound by no more than this part of it, none is sought any more.
+const ENOUGH: f64 = 1e-3;
 
 /// The part of the solver's slack below which a carried force is no longer taken: the best one at this grasp
 /// may be far better.
@@ -54,6 +56,15 @@ struct Margin {
     contacts: Vec<Contact>,
     lower: f64,
     place: Place,
+}
+
+impl Margin {
+    /// Raises the bound by a proof of another grasp, where it proves more.
+    fn sharpen(&mut self, proof: &Proof) {
+        if let Some(proof) = force::prove(&self.contacts, &proof.forces) {
+            self.lower = self.lower.max(force::margin(&self.contacts, &proof));
+        }
+    }
 }
 
 impl StabilityCheck {
@@ -233,18 +244,30 @@ impl StabilityCheck {
     }
 
     /// The smallest margin, for the certificate: bounds that a carried force left loose are sharpened with
-    /// the best one.
+    /// the best one, which is often nearly the best of grasps close by.
     pub(crate) fn extreme(&mut self) -> Option<Extreme> {
+        let smallest = |a: &&mut Margin, b: &&mut Margin| a.lower.total_cmp(&b.lower);
         for _ in 0..MOST_REFINEMENTS {
-            let worst = self.margins.iter_mut().min_by(|a, b| a.lower.total_cmp(&b.lower))?;
-            let refined = best(&worst.contacts).map_or(0.0, |proof| force::margin(&worst.contacts, &proof));
-            if refined <= worst.lower * (1.0 + 1e-9) {
+            let worst = self.margins.iter_mut().min_by(smallest)?;
+            let before = worst.lower;
+            let Ok(proof) = best(&worst.contacts) else { break };
+            worst.lower = before.max(force::margin(&worst.contacts, &proof));
+            let refined = worst.lower;
+            if refined <= before * (1.0 + ENOUGH) {
                 break;
             }
-            worst.lower = refined;
+            for other in self.margins.iter_mut().filter(|other| other.lower < refined) {
+                other.sharpen(&proof);
+            }
         }
         let worst = self.margins.iter().min_by(|a, b| a.lower.total_cmp(&b.lower))?;
         Some(Extreme::new(worst.lower, worst.place.clone(), HoldsAt::EveryState))
+    }
+
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, mut later: Self) {
+        self.gauge.join(later.gauge);
+        self.margins.append(&mut later.margins);
     }
 
     pub(crate) fn check(self) -> Check {
