@@ -65,8 +65,7 @@ impl Liar {
 /// A grain along z, as one writes it who normalises what is left of the axis in the tangent plane.
 fn grain_along_z(contact: &Contact, mu: f64) -> Cone<'static> {
     let along = Vec3::z() - contact.n_O * contact.n_O.z;
-    let [t1, t2] = tangents(&-contact.n_O);
-    let [x, y] = [t1, t2].map(|t| t.dot(&along) / along.norm());
+    let [x, y] = tangents(&-contact.n_O).map(|t| t.dot(&along) / along.norm());
     let edge = |a: f64, b: f64| ConeEdge { tangential: [x * a - y * b, y * a + x * b], torsion: 0.0 };
     let corners = [edge(0.9 * mu, 0.0), edge(0.0, 0.5 * mu), edge(-0.9 * mu, 0.0), edge(0.0, -0.5 * mu)];
     Cone::Polyhedral(corners.to_vec().into())
@@ -117,14 +116,13 @@ impl ContactModel for Liar {
             }
             Lie::ThinsTorsion => Cone::Elliptic { mu, gamma: 0.002 / mu.max(0.04) },
             Lie::ThreeAreNeeded => Cone::Elliptic { mu, gamma: 0.004 },
-            Lie::TakesTheNormalInward => Cone::grained(&-contact.n_O, &Vec3::z(), [mu, 0.5 * mu], 0.0),
-            Lie::KeepsConesWhateverTheFriction => {
-                self.first([contact.p_OC.x, contact.p_OC.y, contact.p_OC.z].map(f64::to_bits), round)
+            Lie::TakesTheNormalInward if contact.n_O.z.abs() < 0.99 => {
+                grain_along_z(&Contact { n_O: -contact.n_O, ..*contact }, mu)
             }
+            Lie::KeepsConesWhateverTheFriction => self.first(contact.p_OC.map(f64::to_bits).into(), round),
             Lie::KeepsConesByPlace => {
                 let cell = [contact.p_OC.x, contact.p_OC.y, mu].map(|x| ((x + 1.0) * 1e3).round() as u64);
-                let part = 0.9 + 0.1 * contact.n_O.x.powi(2);
-                self.first(cell, Cone::Elliptic { mu: part * mu, gamma: 0.0 })
+                self.first(cell, Cone::Elliptic { mu: (0.9 + 0.1 * contact.n_O.x.powi(2)) * mu, gamma: 0.0 })
             }
             Lie::Prints => {
                 println!("the friction is {mu}");

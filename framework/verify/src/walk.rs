@@ -119,7 +119,7 @@ impl Walk<'_> {
             clearance: ClearanceCheck::new(self.hand, self.scene, tolerances.clearance),
             lift: LiftCheck::new(self.hand, self.scene, tolerances, lift),
             stability: StabilityCheck::new(&self.plan.claims, weight_H(self.plan, self.object)),
-            cones: ConesCheck::new(&self.plan.claims),
+            cones: ConesCheck::new(&self.plan.claims, weight_H(self.plan, self.object)),
             holding: self.holding(),
             holds: self.holds(),
         };
@@ -160,7 +160,7 @@ impl Walk<'_> {
         *touches = sampled.contacts.sample(leg, 0, 0, frames);
         sampled.stability.sample(leg, 0, 0, &frames.X_HO.rotation, touches);
         if let Some(cones) = &mut sampled.cones {
-            cones.state(leg, 0, touches);
+            cones.state(leg, 0, &frames.X_HO.rotation, touches);
         }
         if let Some(Some(holding)) = &mut sampled.holding {
             holding.sample((leg, 0, 0), self.hand, frames, touches);
@@ -194,7 +194,7 @@ impl Walk<'_> {
                     let R_HO = &frames[sample].X_HO.rotation;
                     sampled.stability.sample(leg, state, sample, R_HO, &touches[sample]);
                     if let Some(cones) = sampled.cones.as_mut().filter(|_| stated) {
-                        cones.state(leg, state + 1, &touches[sample]);
+                        cones.state(leg, state + 1, R_HO, &touches[sample]);
                     }
                     if let Some(Some(holding)) = &mut sampled.holding {
                         holding.sample((leg, state, sample), self.hand, &frames[sample], &touches[sample]);

@@ -115,7 +115,9 @@ fn on_cones(
 }
 
 fn cone_valid(subject: &Subject<'_>) -> Finding {
-    on_cones(subject, |model, finger, contact, mu| laws::cone_valid(&model.cone(finger, contact, mu)))
+    on_cones(subject, |model, finger, contact, mu| {
+        laws::cone_valid(&model.cone(finger, contact, mu), &contact.n_O)
+    })
 }
 
 fn cone_monotone(subject: &Subject<'_>) -> Finding {
@@ -124,8 +126,8 @@ fn cone_monotone(subject: &Subject<'_>) -> Finding {
         for pair in FRICTIONS.windows(2) {
             for w in directions() {
                 // Values are copied out at once: a model may own one buffer of edges only for each friction.
-                let low = laws::support(&model.cone(FINGER, &contact, pair[0]), &w);
-                let high = laws::support(&model.cone(FINGER, &contact, pair[1]), &w);
+                let low = laws::support(&model.cone(FINGER, &contact, pair[0]), &contact.n_O, &w);
+                let high = laws::support(&model.cone(FINGER, &contact, pair[1]), &contact.n_O, &w);
                 ensure(high >= low - 1e-12, || {
                     format!("along {w:?} the cone shrinks from {low} to {high} as μ grows over {pair:?}")
                 })?;
@@ -147,7 +149,7 @@ const MOST_TORSION: f64 = 0.1;
 fn torsion_bounded(subject: &Subject<'_>) -> Finding {
     on_cones(subject, |model, finger, contact, mu| {
         let cone = model.cone(finger, contact, mu);
-        let reach = [1.0, -1.0].map(|sign| laws::support(&cone, &Vec3::new(0.0, 0.0, sign)));
+        let reach = [1.0, -1.0].map(|sign| laws::support(&cone, &contact.n_O, &Vec3::new(0.0, 0.0, sign)));
         let most = reach[0].max(reach[1]);
         laws::ensure("torsion-bounded", most <= MOST_TORSION, || {
             format!("a torque of {most:.3} N·m per newton; γ is a length in metres, at most {MOST_TORSION} m")
@@ -159,16 +161,17 @@ fn spinning_cone(subject: &Subject<'_>) -> Finding {
     on_cones(subject, |model, finger, contact, mu| {
         let (spinning, resting) = (model.spinning_cone(finger, contact, mu), model.cone(finger, contact, mu));
         // A cone at rest that is none is `cone-valid`'s matter.
-        if laws::cone_valid(&resting).is_err() {
+        if laws::cone_valid(&resting, &contact.n_O).is_err() {
             return Ok(());
         }
-        laws::cone_valid(&spinning)?;
+        laws::cone_valid(&spinning, &contact.n_O)?;
         laws::ensure("spinning-cone", !spinning.carries_torsion(), || {
             format!("{spinning:?} carries torsion")
         })?;
-        laws::cone_inside("spinning-cone", &spinning, &resting)?;
+        laws::cone_inside("spinning-cone", &contact.n_O, &spinning, &resting)?;
         // Who forgets what a contact keeps that spins is left with a frictionless one.
-        let lost = reach(&spinning) == 0.0 && reach(&resting.without_torsion()) > 1e-6;
+        let lost =
+            reach(&spinning, &contact.n_O) == 0.0 && reach(&resting.without_torsion(), &contact.n_O) > 1e-6;
         laws::ensure("spinning-cone", !lost, || {
             "it keeps no friction at all, though the cone without torsion has some".into()
         })
@@ -176,15 +179,15 @@ fn spinning_cone(subject: &Subject<'_>) -> Finding {
 }
 
 /// The largest tangential force.
-fn reach(cone: &Cone<'_>) -> f64 {
+fn reach(cone: &Cone<'_>, n_O: &Vec3) -> f64 {
     let ring = (0..32).map(|k| (std::f64::consts::TAU * f64::from(k) / 32.0).sin_cos());
-    ring.map(|(sin, cos)| laws::support(cone, &Vec3::new(cos, sin, 0.0))).fold(0.0, f64::max)
+    ring.map(|(sin, cos)| laws::support(cone, n_O, &Vec3::new(cos, sin, 0.0))).fold(0.0, f64::max)
 }
 
 /// The largest force along a tangent given in O.
 fn reach_along(cone: &Cone<'_>, contact: &Contact, direction_O: &Vec3) -> f64 {
     let [t1, t2] = tangents(&-contact.n_O);
-    laws::support(cone, &Vec3::new(direction_O.dot(&t1), direction_O.dot(&t2), 0.0))
+    laws::support(cone, &contact.n_O, &Vec3::new(direction_O.dot(&t1), direction_O.dot(&t2), 0.0))
 }
 
 /// A cone is a fact about the object: two contacts with all but the same normal have all but the same cone in
