@@ -270,10 +270,11 @@ fn unscaled(contact: &GraspContact<'_>, plugin: &'static str) -> Result<ScaledCo
         Cone::Elliptic { .. } | Cone::Grained(_) => Ok(ScaledContact::of(contact)),
         Cone::Polyhedral(_) => Err(CallError::Unsupported {
             plugin: plugin.to_owned(),
-            reason: "it decides elliptic cones exactly and takes no polyhedral ones; use an elliptic contact \
-                model, or `stability-test/force-closure` or `stability-test/equilibrium`, which take polyhedral \
-                cones as they are"
-                .into(),
+            reason:
+                "it decides elliptic cones exactly and takes no polyhedral ones; use an elliptic contact \
+                model, or `stability-test/force-closure` or `stability-test/equilibrium`, which take \
+                polyhedral cones as they are"
+                    .into(),
         }),
     }
 }

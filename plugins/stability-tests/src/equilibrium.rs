@@ -50,12 +50,13 @@ impl Settings for EquilibriumSettings {}
 /// For the weight alone and for the weight with each of the 24 wrenches that [`Load`] describes (they enclose
 /// all forces up to `disturbance_force` at the centre of mass, all torques up to `disturbance_torque`, and
 /// mixtures), some forces must balance it: then, cones being convex, everything between is balanced too.
-/// Elliptic cones are taken exactly, with a grain too, and so are polyhedral ones. Forces are found by Newton's method to the analytic centre of those that
-/// balance the weight, an interior-point form of the grasp-force problem of Han, Trinkle, Li, "Grasp analysis
-/// as linear matrix inequality problems", T-RA 2000, and Boyd & Wegbreit, "Fast computation of optimal
-/// contact forces", T-RO 2007. The centre's linear response is tried for all 24 first; where it leaves a
-/// cone, Newton goes on from there. A yes is proved by forces strictly inside, a no by a twist on which all
-/// contacts together have too little power; neither gives [`Stability::Undecided`].
+/// Elliptic cones are taken exactly, with a grain too, and so are polyhedral ones. Forces are found by
+/// Newton's method to the analytic centre of those that balance the weight, an interior-point form of the
+/// grasp-force problem of Han, Trinkle, Li, "Grasp analysis as linear matrix inequality problems", T-RA
+/// 2000, and Boyd & Wegbreit, "Fast computation of optimal contact forces", T-RO 2007. The centre's
+/// linear response is tried for all 24 first; where it leaves a cone, Newton goes on from there. A yes is
+/// proved by forces strictly inside, a no by a twist on which all contacts together have too little
+/// power; neither gives [`Stability::Undecided`].
 ///
 /// Unlike closure the verdict depends on the object's orientation (gravity in its frame), mass and centre of
 /// mass: a grasp, and which of its fingers may be lifted, may be stable in one pose and not in another, and a
@@ -143,8 +144,8 @@ impl Equilibrium {
         }
     }
 
-    /// The factor by which the disturbances may grow, where `holds` answers for one: bounds, the upper one infinite where it is above
-    /// [`MOST`].
+    /// The factor by which the disturbances may grow, where `holds` answers for one: bounds, the upper
+    /// one infinite where it is above [`MOST`].
     fn factor(&self, holds: impl Fn(f64) -> bool) -> (f64, f64) {
         let (mut low, mut high) = (0.0, 1.0);
         while holds(high) {

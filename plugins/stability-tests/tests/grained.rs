@@ -89,7 +89,8 @@ impl Program {
 }
 
 /// How far inside the cones some forces can be that give `wanted` (N, N·m over the length) with normal forces
-/// up to [`MOST`], as a part of it; without `wanted`, that balance each other with normal forces that sum to 1.
+/// up to [`MOST`], as a part of it; without `wanted`, that balance each other with normal forces that sum to
+/// 1.
 fn reference(grasp: &Grasp<'_>, wanted: Option<Vector6<f64>>) -> Option<f64> {
     let parts: Vec<Part> = grasp.contacts().iter().map(part).collect();
     let sizes: Vec<usize> = parts

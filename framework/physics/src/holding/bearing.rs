@@ -16,8 +16,8 @@ pub type Exerted = Vector4<f64>;
 pub struct Bearing {
     /// Wrench per unit of each coordinate: force, and torque about the centre of mass over the length.
     pub(crate) map: SMatrix<f64, 6, 4>,
-    /// Force directions (inward normal and two tangents) in O; a tangent along which there is less friction is
-    /// as much shorter.
+    /// Force directions (inward normal and two tangents) in O; a tangent along which there is less friction
+    /// is as much shorter.
     basis: [Vec3; 3],
     lever: f64,
     pub(crate) mu: f64,

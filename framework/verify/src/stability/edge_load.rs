@@ -1,5 +1,5 @@
-//! Weights of polyhedral cones' edges that hold the object's weight and a load: a proof by arithmetic, whoever
-//! found the weights.
+//! Weights of polyhedral cones' edges that hold the object's weight and a load: a proof by arithmetic,
+//! whoever found the weights.
 
 use super::load::LoadCheck;
 use super::socp;

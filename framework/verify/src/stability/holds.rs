@@ -169,8 +169,8 @@ impl HoldsCheck {
         None
     }
 
-    /// The friction (with a grain the larger coefficient at the share that forces take), and the largest share
-    /// of an effort, that forces take.
+    /// The friction (with a grain the larger coefficient at the share that forces take), and the largest
+    /// share of an effort, that forces take.
     fn needs(&self, held: &Held, forces: &Forces) -> (f64, f64) {
         let each = || (0..held.contacts.len()).map(|i| (i, &forces[i]));
         let friction = each().map(|(_, force)| friction_of(force)).fold(0.0, f64::max) * self.cone.most();
