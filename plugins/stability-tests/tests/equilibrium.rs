@@ -7,8 +7,8 @@ use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverSt
 use nalgebra::{DMatrix, Vector6};
 use proptest::prelude::*;
 use regrasp_api::{
-    Assessment, Certificate, Cone, ConeEdge, Criterion, FingerIndex, Grasp, GraspContact, Hint, Random,
-    Rotation, Stability, StabilityTest, Vec3, any_orthogonal,
+    Assessment, Certificate, Cone, ConeEdge, Criterion, FingerIndex, Grasp, GraspContact, Random, Rotation,
+    Stability, StabilityTest, Vec3, any_orthogonal,
 };
 use regrasp_stability_tests::{Equilibrium, EquilibriumSettings};
 use support::{Family, Touch, grasp_of, moved, random_touches, touch, verdict, verdict_of, with_context};

@@ -279,7 +279,7 @@ fn holding_is_that_of_the_conic_program() {
     compare(
         "holding",
         (0..400).map(|_| {
-            let mut grasp = random_grasp(&mut random, false);
+            let grasp = random_grasp(&mut random, false);
             // As the whole of the friction at the object's own centre.
             let load = wrench(&object.p_OCm, grasp.g_O * -MASS, Vec3::zeros());
             (verdict_of(&test, &grasp).is_stable(), reference(&grasp, Some(load)))
