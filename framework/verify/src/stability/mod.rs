@@ -5,6 +5,7 @@
 //! problems", IEEE T-RA 2000.
 
 mod cones;
+mod edge_load;
 mod force;
 mod held;
 mod holding;
@@ -71,8 +72,6 @@ impl StabilityCheck {
     /// For an object of this weight (N, in H).
     pub(crate) fn new(claims: &Claims, weight_H: Vec3) -> Self {
         let mut gauge = Gauge::new("stability", "force", Side::Above, LEAST_SLACK);
-        let valid =
-            |cone: &ConeClaim| cone.mu >= 0.0 && cone.gamma >= 0.0 && (cone.mu + cone.gamma).is_finite();
         let (known, load) = match &claims.criterion {
             Criterion::Closure => (true, None),
             Criterion::Equilibrium(load) => {
@@ -90,11 +89,11 @@ impl StabilityCheck {
                 ..Default::default()
             });
         }
-        let cone = claims.contact.cone.filter(valid).filter(|_| known && !elsewhere);
+        let cone = claims.contact.cone.filter(ConeClaim::is_sound).filter(|_| known && !elsewhere);
         if claims.contact.cone.is_none() {
             gauge.remark(
                 "not independently checked: the plan claims no elliptic cone that all its contacts share, \
-                    and no closure by cones of their own",
+                    and neither closure nor equilibrium by cones of their own",
             );
         } else if cone.is_none() && known && !elsewhere {
             gauge.note(f64::NAN, || Place {
@@ -179,15 +178,13 @@ impl StabilityCheck {
         touches: &[Option<Touch>; MAX_FINGERS],
     ) -> Vec<Contact> {
         // Contacts may spin in a transfer, and a spinning contact transmits no torsion.
-        let gamma = if leg.moving.is_some() { cone.gamma } else { 0.0 };
+        let cone = if leg.moving.is_some() { cone.cone() } else { cone.cone().without_torsion() };
         let holding = touches.iter().enumerate().filter(|&(finger, _)| leg.moving != Some(finger));
-        let contact = |touch: Touch| Contact {
-            r: (touch.p_OC - self.center_O) / self.length,
-            n: -touch.n_O,
-            mu: cone.mu,
-            gamma: gamma / self.length,
+        let contact = |touch: Touch| {
+            let r = (touch.p_OC - self.center_O) / self.length;
+            Contact::new(r, -touch.n_O, &cone, self.length)
         };
-        holding.filter_map(|(_, touch)| touch.map(contact)).collect()
+        holding.filter_map(|(_, touch)| contact((*touch)?)).collect()
     }
 
     /// A proof for the grasp from the carried force, else (or where its slack has dwindled) from the
@@ -234,7 +231,7 @@ impl StabilityCheck {
         touches: &[Option<Touch>; MAX_FINGERS],
         forces_O: &[Vec3],
     ) -> Option<f64> {
-        let cone = self.cone.filter(|cone| self.load.is_none() && cone.mu > 0.0);
+        let cone = self.cone.filter(|cone| self.load.is_none() && cone.least() > 0.0);
         let proved = cone.and_then(|cone| {
             let contacts = self.contacts(leg, &cone, touches);
             let proof = force::prove(&contacts, &force::scaled(&contacts, forces_O))?;
