@@ -109,3 +109,103 @@ impl Motions {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::Chains;
+    use crate::track;
+    use regrasp_api::{FingerIndex, Random};
+    use regrasp_plan::{PoseRecord, StateRecord};
+
+    /// A finger of three joints on a turned base, with a slanted rod on its last link, and a ball.
+    fn problem() -> regrasp_api::Problem {
+        let text = r#"{
+            "hand": {"name": "h", "fingertip_radius": 0.01, "finger": [{
+                "name": "f", "tip": [0.03, 0.0, 0.01], "rest": [0, 0, 0],
+                "base": {"position": [0.02, -0.03, 0.01], "axis": [1, 2, 3], "angle_deg": 70},
+                "joint": [
+                    {"name": "a", "axis": [0, 1, 0], "lower": -3, "upper": 3},
+                    {"name": "b", "kind": "prismatic", "axis": [1, 0, 0], "lower": -0.05, "upper": 0.05},
+                    {"name": "c", "axis": [0, 0, 1], "lower": -3, "upper": 3,
+                     "origin": {"position": [0.04, 0, 0]},
+                     "link": [{"shape": {"kind": "capsule", "from": [0, 0.01, 0], "to": [0.03, 0, 0.01],
+                                         "radius": 0.004}}]}
+                ]
+            }]},
+            "object": {"shape": {"kind": "sphere", "radius": 0.03}, "friction": 0.8},
+            "start": {"pose": {}}, "goal": []
+        }"#;
+        serde_json::from_str(text).unwrap()
+    }
+
+    fn record(random: &mut Random, turn: f64) -> StateRecord {
+        let joints = vec![vec![random.range(-1.0, 1.0), random.range(-0.02, 0.02), random.range(-1.0, 1.0)]];
+        let half = random.direction() * (turn / 2.0).sin();
+        let object = PoseRecord {
+            position: (random.direction() * 0.01).into(),
+            orientation: [(turn / 2.0).cos(), half.x, half.y, half.z],
+        };
+        let (velocities, forces, cones) = (None, None, None);
+        StateRecord { time: 0.0, object, joints, velocities, contacts: vec![None], forces, cones }
+    }
+
+    /// The rod's ends and the fingertip's centre, in O.
+    fn points(scene: &Scene, body: usize, frames: &Frames) -> Vec<Vec3> {
+        let X_OB = frames.X_HO.inv_mul(scene.pose(body, frames));
+        let ends = match &scene.bodies[body].core {
+            Core::Point(p) => vec![*p],
+            Core::Segment(p, q) => vec![*p, *q, (p + q) / 2.0],
+            _ => vec![],
+        };
+        ends.iter().map(|p| (X_OB * Point3::from(*p)).coords).collect()
+    }
+
+    #[test]
+    fn no_point_moves_farther_than_is_said_as_seen_from_the_object() {
+        let mut random = Random::from_key(23, 0, 0, 0);
+        let problem = problem();
+        let hand = Chains::new(&problem.hand).unwrap();
+        let object = regrasp_world::load_object(&problem.object).unwrap();
+        let scene = Scene::new(&problem, &object, &hand, &[3.0, 0.05, 3.0]).unwrap();
+        let moved = [Body::Link(FingerIndex(0), 2), Body::Fingertip(FingerIndex(0))];
+        let mut tightest = 0.0_f64;
+        for _ in 0..60 {
+            // Up to steps far longer than plans have, so that paths bend.
+            let scale = random.range(0.02, 1.0);
+            let (from, mut to) = (record(&mut random, 0.0), record(&mut random, 0.8 * scale));
+            for (a, b) in from.joints[0].iter().zip(&mut to.joints[0]) {
+                *b = a + (*b - a) * scale;
+            }
+            for (a, b) in from.object.position.iter().zip(&mut to.object.position) {
+                *b = a + (*b - a) * scale;
+            }
+            let states = [&from, &to].map(|record| track::state(record, &hand).unwrap());
+            let leg = Leg { index: 0, moving: None, states: states.into() };
+            let mut frames = vec![Frames::new(&hand); SAMPLES + 1];
+            for (k, frames) in frames.iter_mut().enumerate() {
+                frames.place(&hand, &leg, 0, k as f64 / SAMPLES as f64);
+            }
+            let mut motions = Motions::new(&scene);
+            motions.step(&scene, &leg, 0);
+            for body in (0..scene.bodies.len()).filter(|&b| moved.contains(&scene.bodies[b].body)) {
+                let said = *motions.seen(&scene, body, &frames);
+                for (k, said) in said.iter().enumerate() {
+                    let mut fine = Frames::new(&hand);
+                    let mut at = |i: usize| {
+                        fine.place(&hand, &leg, 0, (k as f64 + i as f64 / 40.0) / SAMPLES as f64);
+                        points(&scene, body, &fine)
+                    };
+                    let path: Vec<Vec<Vec3>> = (0..=40).map(&mut at).collect();
+                    for point in 0..path[0].len() {
+                        let length: f64 = path.windows(2).map(|w| (w[1][point] - w[0][point]).norm()).sum();
+                        assert!(length <= *said, "{length} {said}");
+                        tightest = tightest.max(length / said);
+                    }
+                }
+            }
+        }
+        // A bound that says nothing would pass, too.
+        assert!(tightest > 0.7, "{tightest}");
+    }
+}
