@@ -236,14 +236,20 @@ pub struct ScenariosArgs {
     pub json: bool,
 }
 
-/// Write a crate with a plugin of your own: a working one to start from, its test, and the library to load.
+/// Write a crate, or a Python package, with a plugin of your own: a working one to start from, and its test.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  regrasp new-plugin sampler mine && cd mine-sampler && cargo test")]
+#[command(
+    after_help = "Examples:\n  regrasp new-plugin sampler mine && cd mine-sampler && cargo test\n  regrasp \
+        new-plugin --python sampler mine && cd mine-sampler && python -m pytest"
+)]
 pub struct NewPluginArgs {
     /// The plugin's role: contact-model, stability-test, surface, sampler, local-planner or graph-strategy.
     pub role: String,
     /// The plugin's name, in kebab case; its id is ROLE/NAME.
     pub name: String,
+    /// Write a package in Python in place of a crate; it needs Python's `regrasp`, and no checkout.
+    #[arg(long, conflicts_with = "framework")]
+    pub python: bool,
     /// A checkout of the framework to build against; by default the one that this program was built from.
     #[arg(long, value_name = "PATH")]
     pub framework: Option<PathBuf>,

@@ -15,9 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _regrasp
-from ._errors import VerificationError
+from ._errors import PlanFileError, VerificationError
 from ._figures import Figures, figures
 from ._plot import plan_figure
+from ._scenario import not_finite, plain
 from ._spatial import matrices
 from ._view import View, facts, frame
 
@@ -134,7 +135,13 @@ class Plan:
     @classmethod
     def from_dict(cls, tree: dict[str, Any]) -> Plan:
         """A plan from the tree of its file, as :meth:`to_dict` gives it."""
-        return cls(_regrasp.Plan.parse(json.dumps(tree), "the given tree"))
+        try:
+            text = json.dumps(tree, default=plain, allow_nan=False)
+        except (TypeError, ValueError, RecursionError) as error:
+            place = not_finite(tree) if "range float" in str(error) else ""
+            where = f"`{place}`: " if place else ""
+            raise PlanFileError(f"the given tree is no plan: {where}{error}") from error
+        return cls(_regrasp.Plan.parse(text, "the given tree"))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the plan file; a failure leaves what was there before."""
@@ -237,6 +244,11 @@ class Plan:
     def segments(self) -> list[Segment]:
         """Transfers and regrasps, in turn."""
         return [Segment(*segment) for segment in self._native.segments()]
+
+    @property
+    def goals_reached(self) -> list[int]:
+        """How many of :attr:`segments` there are up to each goal, in turn."""
+        return list(self._head["goals_reached"])
 
     @property
     def duration(self) -> float:
