@@ -112,4 +112,5 @@ def rotation(axis: Array, angle: float) -> Array:
     """The turn by an angle (rad) about a unit vector (Rodrigues)."""
     x, y, z = axis
     K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K
+    R: Array = np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K
+    return R
