@@ -100,7 +100,6 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
 
 /// A crate to be written.
 struct Draft {
-    package: String,
     source: &'static str,
     /// What stands for each `{{key}}` of the texts.
     words: Vec<(&'static str, String)>,
@@ -137,7 +136,7 @@ impl Draft {
             ("api", quoted("api")?),
             ("conformance", quoted("conformance")?),
         ];
-        Ok(Self { package, source, words, is_surface: role == Role::Surface })
+        Ok(Self { source, words, is_surface: role == Role::Surface })
     }
 
     /// The files by their paths in the crate.
