@@ -2,6 +2,7 @@
 
 use crate::numbers::{extent, objective, seconds, whole};
 use crate::outputs::OverwriteArgs;
+use crate::terminal::{When, when};
 use clap::{Args, Parser, Subcommand};
 use regrasp::api::Level;
 use regrasp::run::{Extent, Objective};
@@ -18,6 +19,10 @@ use std::path::PathBuf;
                   Example:\n  regrasp plan sphere -o plan.json && regrasp verify plan.json"
 )]
 pub struct Arguments {
+    /// Colour the report: on a terminal (`auto`, which heeds `NO_COLOR`, `CLICOLOR` and `CLICOLOR_FORCE`),
+    /// `always`, or `never`.
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", value_parser = when)]
+    pub color: When,
     #[command(subcommand)]
     pub command: Command,
 }
@@ -28,6 +33,7 @@ pub enum Command {
     Verify(VerifyArgs),
     Compare(crate::compare::CompareArgs),
     View(crate::view::ViewArgs),
+    Serve(crate::serve::ServeArgs),
     Export(crate::export::ExportArgs),
     Grasps(crate::grasps::GraspsArgs),
     Roadmap(crate::roadmap::RoadmapArgs),
@@ -193,10 +199,13 @@ pub struct LibraryArgs {
 
 /// Check a plan file with the independent verifier.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  regrasp verify plan.json")]
+#[command(after_help = "Examples:\n  regrasp verify plan.json\n  regrasp verify plan.json --threads 1")]
 pub struct VerifyArgs {
     /// A plan file.
     pub plan: PathBuf,
+    /// Look with this many threads, 1 to 256; the verdict is the same. By default as many as there are cores.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16, 1, 256>)]
+    pub threads: Option<u16>,
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub json: bool,
@@ -231,14 +240,20 @@ pub struct ScenariosArgs {
     pub json: bool,
 }
 
-/// Write a crate with a plugin of your own: a working one to start from, its test, and the library to load.
+/// Write a crate, or a Python package, with a plugin of your own: a working one to start from, and its test.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  regrasp new-plugin sampler mine && cd mine-sampler && cargo test")]
+#[command(
+    after_help = "Examples:\n  regrasp new-plugin sampler mine && cd mine-sampler && cargo test\n  regrasp \
+        new-plugin --python sampler mine && cd mine-sampler && python -m pytest"
+)]
 pub struct NewPluginArgs {
     /// The plugin's role: contact-model, stability-test, surface, sampler, local-planner or graph-strategy.
     pub role: String,
     /// The plugin's name, in kebab case; its id is ROLE/NAME.
     pub name: String,
+    /// Write a package in Python in place of a crate; it needs Python's `regrasp`, and no checkout.
+    #[arg(long, conflicts_with = "framework")]
+    pub python: bool,
     /// A checkout of the framework to build against; by default the one that this program was built from.
     #[arg(long, value_name = "PATH")]
     pub framework: Option<PathBuf>,

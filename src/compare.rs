@@ -1,6 +1,7 @@
 //! `regrasp compare`
 
 mod args;
+mod growing;
 mod isolate;
 mod progress;
 mod surroundings;
@@ -9,15 +10,21 @@ mod vary;
 
 pub use args::CompareArgs;
 
+use crate::serve::{Live, Server};
+use crate::terminal::remark;
 use crate::watch::Watch;
 use crate::{Failure, outputs, overrides, plugins, say, say_json};
+use growing::Growing;
 use progress::Bar;
 use regrasp::api::Interrupt;
 use regrasp::host::Registry;
 use regrasp::run::scenario::{self, Scenario};
 use regrasp::study::compare::{
-    self, Change, Draft, Execution, Folder, RUN_THREAD, RunRecord, Seeds, Study, VariantDraft,
+    self, Change, Draft, Execution, Folder, Hypotheses, Pairs, RUN_THREAD, RunRecord, Seeds, Study,
+    VariantDraft,
 };
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::{panic, thread};
 
 pub fn run(args: &CompareArgs) -> Result<(), Failure> {
@@ -27,13 +34,35 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
         let (_, records) = compare::read_study(&args.output).map_err(Failure::refused)?;
         return report(args, &study, &records);
     }
+    if let Some(older) = &args.against {
+        return beside(args, older);
+    }
     let registry = plugins::registry(&args.libraries)?;
     let (scenarios, draft) = request(args, &registry)?;
+    if draft.hypotheses.pairs == Pairs::All && draft.variants.len() > MOST_IN_PAIRS {
+        return Err(Failure::bad_input(format!(
+            "`--pairs all` compares at most {MOST_IN_PAIRS} variants, and there are {}; vary less, or \
+             compare each with the first",
+            draft.variants.len()
+        )));
+    }
     let prepared = compare::prepare(draft, &scenarios, &registry).map_err(Failure::refused)?;
     match args.only {
         Some(key) => isolate::make_one(args, &prepared, key),
         None => make(args, prepared),
     }
+}
+
+/// Sets the study in the output folder beside an older one.
+fn beside(args: &CompareArgs, older: &Path) -> Result<(), Failure> {
+    let against = compare::Against::of(&args.output, older).map_err(Failure::refused)?;
+    against.write(&args.output).map_err(Failure::refused)?;
+    if args.json {
+        return say_json(&table::against(&against, &args.output, older));
+    }
+    let [table, text] = compare::AGAINST_FILES.map(|name| args.output.join(name));
+    let (table, text) = (table.display(), text.display());
+    say(&format!("{}\n  written to `{text}` and `{table}`\n", against.markdown()))
 }
 
 /// Makes what is missing of the study, writes its results, and reports.
@@ -53,7 +82,10 @@ fn make(args: &CompareArgs, mut prepared: compare::Prepared<'_>) -> Result<(), F
         isolate: Some(&processes),
         isolate_all: args.isolate,
     };
-    let complete = compare::execute(&prepared, &mut folder, &execution);
+    let complete = match args.watch {
+        true => watched(&prepared, &mut folder, &execution, &bar)?,
+        false => compare::execute(&prepared, &mut folder, &execution),
+    };
     bar.finish();
     let complete = complete.map_err(Failure::refused)?;
     folder.finish(&prepared.study).map_err(Failure::refused)?;
@@ -62,12 +94,44 @@ fn make(args: &CompareArgs, mut prepared: compare::Prepared<'_>) -> Result<(), F
         return report(args, &prepared.study, &records);
     }
     let (there, all) = (records.len(), prepared.study.keys().len());
+    if there > 0 && !args.json {
+        say(&format!("Of the runs that are finished:\n{}\n", table::text(&prepared.study, &records)))?;
+    }
     let kept = format!("{there} of {all} runs are kept in `{}`", args.output.display());
     match watch.interrupted() {
         true => {
             Err(Failure::interrupted(format!("interrupted: {kept}; the same command goes on from there")))
         }
         false => Err(Failure::bad_input(format!("the system starts no more threads: {kept}"))),
+    }
+}
+
+/// Makes the runs while a page shows the report of those that have ended.
+fn watched(
+    prepared: &compare::Prepared<'_>,
+    folder: &mut Folder,
+    execution: &Execution<'_>,
+    bar: &Bar,
+) -> Result<Result<bool, compare::StudyError>, Failure> {
+    let (server, live, done) = (Server::bind(0)?, Live::default(), Done::default());
+    remark(&[format!("the growing report: {}", server.url())]);
+    let growing = Growing::new(bar, &prepared.study, &live, folder.records());
+    let complete = thread::scope(|scope| {
+        scope.spawn(|| server.serve(&live, &done));
+        let complete = compare::execute(prepared, folder, &Execution { progress: &growing, ..*execution });
+        done.0.store(true, Ordering::Relaxed);
+        complete
+    });
+    Ok(complete)
+}
+
+/// Set once the study is at its end.
+#[derive(Default)]
+struct Done(AtomicBool);
+
+impl Interrupt for Done {
+    fn interrupted(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
     }
 }
 
@@ -113,8 +177,18 @@ fn request(args: &CompareArgs, registry: &Registry) -> Result<(Vec<Scenario>, Dr
         },
         time_limit_s: args.time_limit.or(asked.time_limit_s),
         skip_unsupported: args.skip_unsupported,
+        hypotheses: hypotheses(args, asked.hypotheses),
     };
     Ok((asked.scenarios, draft))
+}
+
+/// Those of the study file, changed by the command line.
+fn hypotheses(args: &CompareArgs, asked: Hypotheses) -> Hypotheses {
+    Hypotheses {
+        pairs: args.pairs.unwrap_or(asked.pairs),
+        measures: if args.measures.is_empty() { asked.measures } else { args.measures.clone() },
+        band: args.equivalence.map_or(asked.band, |percent| 1e-2 * percent),
+    }
 }
 
 fn scenarios(args: &CompareArgs, registry: &Registry) -> Result<Vec<Scenario>, Failure> {
@@ -145,6 +219,9 @@ fn variants(args: &CompareArgs, registry: &Registry) -> Result<Vec<VariantDraft>
 
 /// More would not fit into memory, nor would anybody read them.
 const MOST_VARIANTS: usize = 1000;
+
+/// So many variants are five thousand pairs.
+const MOST_IN_PAIRS: usize = 100;
 
 fn report(args: &CompareArgs, study: &Study, records: &[RunRecord]) -> Result<(), Failure> {
     if args.json {

@@ -7,7 +7,6 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use regrasp::export::{ExportError, File, Format, Scene};
 use serde_json::json;
 use std::fs;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Write a plan in the formats of other programs.
@@ -119,10 +118,7 @@ fn tell(args: &ExportArgs, files: &[(Format, File)], notes: &[String]) -> Result
             .collect();
         return say_json(&json!({ "files": list, "notes": notes }));
     }
-    for note in notes {
-        // A reader of standard error that has gone away is no failure.
-        let _ = writeln!(io::stderr(), "note: {}", crate::terminal::printable(note));
-    }
+    crate::terminal::remark(notes);
     let mut table = Table::new("<<>", &["format", "file", "kB"]);
     for (format, file) in files {
         let name = args.output.join(&file.name).display().to_string();

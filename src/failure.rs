@@ -1,9 +1,8 @@
 //! How the program ends when it does not succeed.
 
-use crate::terminal::printable;
+use crate::terminal::{Paint, tell};
 use regrasp::api::{Refusal, Refuse};
 use serde_json::{Value, json};
-use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// A failure with its exit code and message.
@@ -66,9 +65,8 @@ impl Failure {
 
     /// Prints the message to standard error and gives the exit code.
     pub fn exit(self) -> ExitCode {
-        let label = if self.code == 2 { "error: " } else { "" };
-        // A reader of standard error that has gone away changes no exit code.
-        let _ = writeln!(io::stderr(), "{label}{}", printable(self.message.trim_end()));
+        let label = if self.code == 2 { "error:" } else { "" };
+        tell(label, Paint::Bad, self.message.trim_end());
         ExitCode::from(self.code)
     }
 }

@@ -11,7 +11,7 @@ use crate::table::Table;
 use crate::terminal::printable;
 use crate::view::PageArgs;
 use crate::{Failure, inputs, say, say_json};
-use clap::Args;
+use clap::{Args, FromArgMatches};
 use regrasp::api::{FingerIndex, Hand, HandDescription, JointDescription, Vec3};
 use regrasp::hands::{HandOptions, HandReport, JointChoice, ReadHand, read_hand, read_urdf_text};
 use regrasp::world::{ChainHand, FingerWorkspace, ObjectPlace, finger_workspace, object_places};
@@ -123,13 +123,7 @@ pub fn run(args: &HandArgs) -> Result<(), Failure> {
     args.page.check(&inputs::of_robot(&args.file, &args.packages), &wished, args.overwrite)?;
     let ReadHand { description, report } = read(args)?;
     let hand = ChainHand::new(description).map_err(Failure::refused)?;
-    let understood = Understood {
-        hand: &hand,
-        report: &report,
-        reach: fingers(&hand).map(|finger| finger_workspace(&hand, finger)).collect(),
-        places: object_places(&hand, args.ball),
-        ball: args.ball,
-    };
+    let understood = Understood::of(&hand, &report, args.ball);
     if let Some(path) = &args.output {
         let text =
             if args.scenario { understood.scenario(args, path)? } else { hand_file(hand.description())? };
@@ -144,6 +138,16 @@ pub fn run(args: &HandArgs) -> Result<(), Failure> {
         return Ok(());
     }
     if args.json { say_json(&understood.json()) } else { say(&understood.text(args.output.as_deref())) }
+}
+
+/// The page of a robot's file, read as without any option.
+pub fn page_of(file: &str) -> Result<String, Failure> {
+    let command = HandArgs::augment_args(clap::Command::new("hand"));
+    let words = command.try_get_matches_from(["hand", file]).map_err(Failure::bad_input)?;
+    let args = HandArgs::from_arg_matches(&words).map_err(Failure::bad_input)?;
+    let ReadHand { description, report } = read(&args)?;
+    let hand = ChainHand::new(description).map_err(Failure::refused)?;
+    Understood::of(&hand, &report, args.ball).page()
 }
 
 fn read(args: &HandArgs) -> Result<ReadHand, Failure> {
@@ -226,6 +230,13 @@ struct Understood<'a> {
     /// Where the fingers surround a ball, the best place first.
     places: Vec<ObjectPlace>,
     ball: f64,
+}
+
+impl<'a> Understood<'a> {
+    fn of(hand: &'a ChainHand, report: &'a HandReport, ball: f64) -> Self {
+        let reach = fingers(hand).map(|finger| finger_workspace(hand, finger)).collect();
+        Self { hand, report, reach, places: object_places(hand, ball), ball }
+    }
 }
 
 impl Understood<'_> {
@@ -330,9 +341,9 @@ impl Understood<'_> {
                     finger.name.clone(),
                     format!("{:.1}", joint.lower.to_degrees()),
                     format!("{:.1}", joint.upper.to_degrees()),
-                    joint.velocity.to_string(),
-                    joint.acceleration.to_string(),
-                    joint.effort.to_string(),
+                    short(joint.velocity),
+                    short(joint.acceleration),
+                    short(joint.effort),
                     driver(joint),
                 ]);
             }
@@ -359,6 +370,11 @@ fn driver(joint: &JointDescription) -> String {
     let say =
         |mimic: &regrasp::api::Mimic| format!("{} × {} + {}", mimic.multiplier, mimic.joint, mimic.offset);
     joint.mimic.as_ref().map(say).unwrap_or_default()
+}
+
+/// A figure without the digits that conversions of units leave: 7.329, not 7.328999999999999.
+fn short(x: f64) -> String {
+    ((x * 1e4).round() / 1e4).to_string()
 }
 
 /// A heading and its lines; nothing where there are none.

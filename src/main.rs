@@ -35,6 +35,7 @@ mod report;
 mod roadmap;
 mod scenarios;
 mod schema;
+mod serve;
 mod suite;
 mod table;
 mod terminal;
@@ -55,12 +56,14 @@ use regrasp as _;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    terminal::choose(arguments.color);
     output::keep();
     let done = match &arguments.command {
         Command::Plan(args) => plan::run(args),
         Command::Verify(args) => verify::run(args),
         Command::Compare(args) => compare::run(args),
         Command::View(args) => view::run(args),
+        Command::Serve(args) => serve::run(args),
         Command::Export(args) => export::run(args),
         Command::Grasps(args) => grasps::run(args),
         Command::Roadmap(args) => roadmap::run(args),
@@ -96,9 +99,13 @@ static ANSWERED: AtomicBool = AtomicBool::new(false);
 
 /// Writes to standard output; a reader that has gone away, as in `regrasp plugins | head`, is no failure.
 fn say(text: &str) -> Result<(), Failure> {
+    write(&terminal::for_standard_output(text))
+}
+
+fn write(text: &str) -> Result<(), Failure> {
     ANSWERED.store(true, Ordering::Relaxed);
     let mut out = output::standard();
-    match out.write_all(terminal::printable(text).as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::bad_input(format!("cannot write to standard output: {error}")))
         }
@@ -108,5 +115,5 @@ fn say(text: &str) -> Result<(), Failure> {
 
 /// Writes a value as JSON to standard output.
 fn say_json(value: &serde_json::Value) -> Result<(), Failure> {
-    say(&format!("{value:#}\n"))
+    write(&terminal::printable(&format!("{value:#}\n")))
 }

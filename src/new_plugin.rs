@@ -1,5 +1,7 @@
 //! `regrasp new-plugin`
 
+mod python;
+
 use crate::args::{LibraryArgs, NewPluginArgs};
 use crate::{Failure, plugins, say};
 use regrasp::api::{Role, Slot, did_you_mean, near};
@@ -21,19 +23,29 @@ const TEMPLATE_NAME: &str = "/template\"";
 pub fn run(args: &NewPluginArgs) -> Result<(), Failure> {
     let role = role(&args.role)?;
     check_name(role, &args.name)?;
+    let package = PathBuf::from(format!("{}-{}", args.name, role.name()));
+    let folder = args.output.clone().unwrap_or(package);
+    if args.python {
+        return python::write(role, &args.name, &folder);
+    }
     let framework = framework(args.framework.as_deref())?;
     let draft = Draft::new(role, &args.name, &framework)?;
-    let folder = args.output.clone().unwrap_or_else(|| PathBuf::from(&draft.package));
-    if fs::read_dir(&folder).map_or(folder.exists(), |mut inside| inside.next().is_some()) {
+    write_all(&folder, draft.files())?;
+    say(&draft.next_steps(&folder))
+}
+
+/// Writes files into a folder that is not there, or empty.
+fn write_all<N: AsRef<Path>>(
+    folder: &Path,
+    files: impl IntoIterator<Item = (N, String)>,
+) -> Result<(), Failure> {
+    if fs::read_dir(folder).map_or(folder.exists(), |mut inside| inside.next().is_some()) {
         return Err(Failure::bad_input(format!(
             "`{}` exists; give another folder with `-o`",
             folder.display()
         )));
     }
-    for (name, text) in draft.files() {
-        write(&folder.join(name), &text)?;
-    }
-    say(&draft.next_steps(&folder))
+    files.into_iter().try_for_each(|(name, text)| write(&folder.join(name), &text))
 }
 
 fn role(name: &str) -> Result<Role, Failure> {
@@ -88,7 +100,6 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
 
 /// A crate to be written.
 struct Draft {
-    package: String,
     source: &'static str,
     /// What stands for each `{{key}}` of the texts.
     words: Vec<(&'static str, String)>,
@@ -125,7 +136,7 @@ impl Draft {
             ("api", quoted("api")?),
             ("conformance", quoted("conformance")?),
         ];
-        Ok(Self { package, source, words, is_surface: role == Role::Surface })
+        Ok(Self { source, words, is_surface: role == Role::Surface })
     }
 
     /// The files by their paths in the crate.

@@ -2,7 +2,7 @@
 //! JSON and no plan.
 
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 
 /// Standard output as the program got it, once its number stands for standard error.
@@ -20,6 +20,11 @@ pub fn keep() {
             let _ = rustix::stdio::dup2_stdout(io::stderr());
         }
     }
+}
+
+/// Whether standard output is a terminal.
+pub fn is_terminal() -> bool {
+    KEPT.get().map_or_else(|| io::stdout().is_terminal(), IsTerminal::is_terminal)
 }
 
 /// The program's standard output.

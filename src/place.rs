@@ -2,9 +2,10 @@
 
 use crate::Failure;
 use regrasp::Stopwatch;
-use regrasp::api::Vec3;
+use regrasp::api::{Problem, Vec3};
 use regrasp::host::Registry;
-use regrasp::planner::Status;
+use regrasp::planner::{self, Status};
+use regrasp::run::scenario::Scenario;
 use regrasp::run::{Run, Setup, scenario};
 use regrasp::world::ObjectPlace;
 use std::path::Path;
@@ -25,17 +26,50 @@ pub fn that_plans(
     places: &[ObjectPlace],
     text: impl Fn(Vec3) -> String,
 ) -> Result<Option<String>, Failure> {
-    for place in spread(places) {
-        let text = text(place);
-        let scenario = scenario::from_text(name, &text, folder, registry).map_err(Failure::refused)?;
-        // A start that collides is refused here: the next place may do better.
+    let read = |place| scenario::from_text(name, &text(place), folder, registry).map_err(Failure::refused);
+    let places = spread(places);
+    let Some(&first) = places.first() else { return Ok(None) };
+    // Hand, object and plugins are made once; at each place only the object's poses are others.
+    let moved = read(first)?;
+    let Ok(setup) = Setup::without_ends(&moved, &moved.choices, registry) else { return Ok(None) };
+    for place in places {
+        let problem = shifted(&moved, place - first);
+        if !is_free(&setup, &problem) {
+            continue;
+        }
+        let options = Stopwatch::limited(EACH);
+        if !setup.run_problem(&problem, &planner::solve, &options.options(0)).is_ok_and(is_solved) {
+            continue;
+        }
+        let scenario = read(place)?;
         let Ok(setup) = Setup::new(&scenario, &scenario.choices, registry) else { continue };
-        let solved = |run: Run| run.outcome.status == Status::Solved && run.is_verified();
-        if setup.run(&Stopwatch::limited(EACH).options(0)).is_ok_and(solved) {
-            return Ok(Some(text));
+        if setup.run(&Stopwatch::limited(EACH).options(0)).is_ok_and(is_solved) {
+            return Ok(Some(text(place)));
         }
     }
     Ok(None)
+}
+
+fn is_solved(run: Run) -> bool {
+    run.outcome.status == Status::Solved && run.is_verified()
+}
+
+/// The problem with start and goals elsewhere.
+fn shifted(scenario: &Scenario, by: Vec3) -> Problem {
+    let mut problem = scenario.problem.clone();
+    let goals = problem.goal.iter_mut().map(|goal| &mut goal.pose);
+    for pose in std::iter::once(&mut problem.start.pose).chain(goals) {
+        pose.position = (Vec3::from(pose.position) + by).into();
+    }
+    problem
+}
+
+/// Whether nothing stands in the object's way at the start and at the goals.
+fn is_free(setup: &Setup<'_>, problem: &Problem) -> bool {
+    let goals = problem.goal.iter().map(|goal| &goal.pose);
+    std::iter::once(&problem.start.pose)
+        .chain(goals)
+        .all(|pose| pose.pose().is_ok_and(|X_HO| setup.check_pose("start.pose", &X_HO).is_ok()))
 }
 
 /// A few of the places that lie apart from each other.

@@ -20,7 +20,8 @@ pub fn span(seconds: f64) -> String {
     match seconds {
         s if s < 0.9995 => format!("{:.1} ms", s * 1e3),
         s if s < 120.0 => format!("{s:.1} s"),
-        s => format!("{:.0} min {:.0} s", (s / 60.0).floor(), s % 60.0),
+        // Rounded first: 299.9 s are 5 min 0 s, not 4 min 60 s.
+        s => format!("{:.0} min {:.0} s", (s.round() / 60.0).floor(), s.round() % 60.0),
     }
 }
 
@@ -86,6 +87,7 @@ mod tests {
     #[test]
     fn spans_suit_the_size() {
         assert_eq!([0.0123, 0.99996, 12.71, 150.2].map(span), ["12.3 ms", "1.0 s", "12.7 s", "2 min 30 s"]);
+        assert_eq!(span(299.9), "5 min 0 s");
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod commands;
 mod examples;
+mod listings;
 mod markdown;
 mod plugins;
 mod schema;
@@ -14,7 +15,8 @@ use regrasp::study::compare;
 use schema::{Chapter, Page};
 use std::path::PathBuf;
 
-/// Write the generated pages of the book's reference: plugins, scenario files, study files, commands.
+/// Write the generated pages of the book's reference (plugins, scenario files, study files, commands), and
+/// bring the listings of its other pages up to date.
 #[derive(Debug, Args)]
 #[command(hide = true, after_help = "Example:\n  regrasp reference book/src/reference")]
 pub struct ReferenceArgs {
@@ -30,8 +32,13 @@ pub fn run(args: &ReferenceArgs) -> Result<(), Failure> {
         ("study.md", study_page()),
         ("commands.md", commands::page(Arguments::command())),
     ];
-    for (name, text) in pages {
-        let path = args.folder.join(name);
+    let mut written: Vec<(PathBuf, String)> =
+        pages.into_iter().map(|(name, text)| (args.folder.join(name), text)).collect();
+    // Beside the reference lie the other pages of the book.
+    if let Some(book) = args.folder.parent().filter(|book| book.join("SUMMARY.md").exists()) {
+        written.extend(listings::stale(book)?);
+    }
+    for (path, text) in written {
         regrasp::plan::write_file(&path, |out| out.write_all(text.as_bytes())).map_err(Failure::refused)?;
         say(&format!("{}\n", path.display()))?;
     }

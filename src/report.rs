@@ -3,6 +3,7 @@
 use crate::holds::holds_lines;
 use crate::quantity::{digits, span};
 use crate::table::Table;
+use crate::terminal::{Paint, paint};
 use crate::verify::check_table;
 use regrasp::api::{Reason, Slot, Tally};
 use regrasp::host::Choices;
@@ -40,7 +41,7 @@ impl Summary<'_> {
             "seed": self.options.seed,
             "threads": self.options.threads,
             "goals": self.scenario.problem.goal.len(),
-            "goals_reached": run.outcome.goal_ends.len(),
+            "goals_reached": run.outcome.goal_ends,
             "time_s": run.planning_s,
             "verification_s": run.verification_s,
             "phases_s": statistics.time_s,
@@ -71,16 +72,25 @@ impl Summary<'_> {
     /// The report for a person.
     pub fn text(&self) -> String {
         let (run, statistics) = (self.run, &self.run.outcome.statistics);
-        let verdict = if run.is_verified() { "verified" } else { "not verified" };
+        let verdict = match run.is_verified() {
+            true => paint(Paint::Good, "solved, verified"),
+            false => paint(Paint::Bad, "solved, not verified"),
+        };
         let mut text = match run.outcome.status {
             Status::Solved => {
-                format!("{}: solved, {verdict} (seed {})\n", self.scenario.name, self.options.seed)
+                format!("{}: {verdict} (seed {})\n", self.scenario.name, self.options.seed)
             }
             _ => format!(
-                "{}: {} of {} goals reached (seed {})\n",
+                "{}: {} (seed {})\n",
                 self.scenario.name,
-                run.outcome.goal_ends.len(),
-                self.scenario.problem.goal.len(),
+                paint(
+                    Paint::Bad,
+                    &format!(
+                        "{} of {} goals reached",
+                        run.outcome.goal_ends.len(),
+                        self.scenario.problem.goal.len()
+                    )
+                ),
                 self.options.seed
             ),
         };
@@ -97,7 +107,7 @@ impl Summary<'_> {
             .outcome
             .warnings
             .iter()
-            .map(|warning| format!("  warning       {warning}\n"))
+            .map(|warning| format!("  {}       {warning}\n", paint(Paint::Look, "warning")))
             .collect::<String>();
         text + &self.saved_line()
     }
@@ -166,7 +176,7 @@ impl Summary<'_> {
             .run
             .verdict
             .as_ref()
-            .map(|verdict| check_table(verdict.failures(), &self.scenario.problem))
+            .map(|verdict| check_table(verdict.failures(), None, &self.scenario.problem))
             .unwrap_or_default();
         let kept = match self.saved {
             Some(path) => format!("it was kept as `{}`", path.display()),

@@ -1,5 +1,7 @@
 //! Tables that line up.
 
+use crate::terminal::width;
+
 /// Rows of cells; the first row is the head.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
@@ -26,14 +28,15 @@ impl Table {
     /// The text, each line indented by two spaces.
     pub fn text(&self) -> String {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
-        let width = |column: usize| {
+        let widest = |column: usize| {
             let cells = self.rows.iter().filter_map(|row| row.get(column));
-            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+            cells.map(|cell| width(cell)).max().unwrap_or(0)
         };
-        let widths: Vec<usize> = (0..columns).map(width).collect();
+        let widths: Vec<usize> = (0..columns).map(widest).collect();
         let line = |row: &Vec<String>| {
-            let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
-                if self.is_left(column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+            let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, &all))| {
+                let room = " ".repeat(all - width(cell));
+                if self.is_left(column) { format!("{cell}{room}") } else { format!("{room}{cell}") }
             });
             format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned() + "\n"
         };

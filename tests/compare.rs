@@ -34,6 +34,7 @@ fn draft(factors: &[Vec<Change>]) -> Draft {
         seeds: Seeds { first: 3, count: 4 },
         time_limit_s: None,
         skip_unsupported: false,
+        hypotheses: Default::default(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::errors;
 use crate::pieces::triples;
-use crate::roles::{Configuration, Stash, with_stash};
+use crate::roles::{Configuration, Stash, fits, with_stash};
 use crate::run::Changes;
 use crate::scenario::{Scenario, registry};
 use crate::watch::{Watch, beside};
@@ -178,6 +178,16 @@ impl Bench {
         configurations: Vec<Configuration>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let count = configurations.len();
+        let hand = self.bench.task().hand;
+        if let Some(odd) = configurations.iter().position(|q| !fits(hand, &q.0)) {
+            let range = "configurations of this hand that hold the object";
+            return Err(errors::argument(
+                py,
+                &format!("configurations[{odd}]"),
+                "one of another hand",
+                range,
+            ));
+        }
         let flat = self.run(py, move |bench, watch| {
             let mut flat = Vec::with_capacity(2 * count);
             for Configuration(q) in &configurations {

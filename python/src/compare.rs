@@ -63,6 +63,7 @@ impl Request {
             seeds: Seeds { first: self.first_seed, count: self.seeds },
             time_limit_s: self.time_limit,
             skip_unsupported: self.skip_unsupported,
+            hypotheses: compare::Hypotheses::default(),
         })
     }
 }

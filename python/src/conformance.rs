@@ -11,7 +11,12 @@ use std::sync::Arc;
 
 /// Puts a plugin through every law of its role; the report as JSON.
 #[pyfunction]
-pub fn conformance(py: Python<'_>, id: &str, settings: String) -> PyResult<String> {
+pub fn conformance(
+    py: Python<'_>,
+    id: &str,
+    settings: String,
+    geodesic_tolerance: Option<f64>,
+) -> PyResult<String> {
     let registry = registry().map_err(|error| errors::run(py, &error, &Stash::default()))?;
     let found = registry.find(id);
     let entry = found.ok_or_else(|| {
@@ -19,7 +24,8 @@ pub fn conformance(py: Python<'_>, id: &str, settings: String) -> PyResult<Strin
     })?;
     let watch = Watch::start(None);
     let stash = Stash::new(&watch);
-    let demands = Demands { settings, ..Demands::default() };
+    let mut demands = Demands { settings, ..Demands::default() };
+    demands.geodesic_tolerance = geodesic_tolerance.unwrap_or(demands.geodesic_tolerance);
     let report =
         beside(py, &watch, None, move || with_stash(&Arc::clone(&stash), || check_with(entry, &demands)))?;
     let row = |check: &regrasp_conformance::Check| {

@@ -87,6 +87,7 @@ pub fn grasps<'py>(
     if !(1..=256).contains(&threads) {
         return Err(errors::argument(py, "threads", &threads.to_string(), "1..=256"));
     }
+    changes.check(py)?;
     let problem = changes.apply(&scenario.0).map_err(|error| errors::host(py, &error))?;
     let watch = Watch::start(problem.problem.limits.budget.time_limit);
     let stash = Stash::new(&watch);

@@ -1,5 +1,6 @@
 //! Hands: forward and inverse kinematics of many postures at once.
 
+use crate::watch::in_parts;
 use crate::{errors, urdf};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -10,6 +11,11 @@ use regrasp::world::ChainHand;
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// Postures between two looks for signals: some milliseconds.
+const POSTURES: usize = 1 << 15;
+/// The same for inverse kinematics, which can be iterative.
+const INVERSES: usize = 1 << 9;
 
 /// A hand as it was understood.
 #[pyclass(frozen, module = "regrasp._regrasp")]
@@ -100,11 +106,46 @@ impl Hand {
         let (count, columns) = joints.as_array().dim();
         self.check(py, finger, columns)?;
         let joints = joints.as_slice()?;
-        let centers = py.detach(|| {
-            let posture = |row: usize| FingerJoints::from_slice(&joints[row * columns..][..columns]);
-            (0..count).flat_map(|row| <[f64; 3]>::from(self.hand.tip_center(finger, &posture(row)))).collect()
-        });
+        let mut centers = vec![0.0; 3 * count];
+        in_parts(py, count, POSTURES, |rows| {
+            for row in rows {
+                let posture = FingerJoints::from_slice(&joints[row * columns..][..columns]);
+                centers[3 * row..][..3].copy_from_slice(self.hand.tip_center(finger, &posture).as_slice());
+            }
+        })?;
         PyArray1::from_vec(py, centers).reshape([count, 3])
+    }
+
+    /// Centres of all fingertips in H (n, fingers, 3) for postures (n, joints) of the whole hand.
+    fn fingertips<'py>(
+        &self,
+        py: Python<'py>,
+        joints: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let fingers = self.hand.finger_count();
+        let sizes: Vec<usize> =
+            (0..fingers).map(|finger| self.hand.finger(FingerIndex(finger as u8)).joints.len()).collect();
+        let (count, columns) = joints.as_array().dim();
+        if columns != sizes.iter().sum::<usize>() {
+            let range = format!("{} joints of the hand", sizes.iter().sum::<usize>());
+            return Err(errors::argument(py, "joints", &format!("{columns} columns"), &range));
+        }
+        let joints = joints.as_slice()?;
+        let mut centers = vec![0.0; 3 * fingers * count];
+        in_parts(py, count, POSTURES, |rows| {
+            let mut left = &joints[rows.start * columns..];
+            let tips = &mut centers[3 * fingers * rows.start..][..3 * fingers * rows.len()];
+            for hand in tips.chunks_exact_mut(3 * fingers) {
+                for (finger, (center, &size)) in hand.chunks_exact_mut(3).zip(&sizes).enumerate() {
+                    let own;
+                    (own, left) = left.split_at(size);
+                    let posture = FingerJoints::from_slice(own);
+                    let p_HF = self.hand.tip_center(FingerIndex(finger as u8), &posture);
+                    center.copy_from_slice(p_HF.as_slice());
+                }
+            }
+        })?;
+        PyArray1::from_vec(py, centers).reshape([count, fingers, 3])
     }
 
     /// Jacobians of the fingertip centre in H (n, 3, joints) for postures (n, joints).
@@ -118,15 +159,18 @@ impl Hand {
         let (count, columns) = joints.as_array().dim();
         self.check(py, finger, columns)?;
         let joints = joints.as_slice()?;
-        let flat = py.detach(|| {
-            let mut flat = Vec::with_capacity(count * 3 * columns);
-            for row in 0..count {
+        let mut flat = vec![0.0; count * 3 * columns];
+        in_parts(py, count, POSTURES, |rows| {
+            for row in rows {
                 let posture = FingerJoints::from_slice(&joints[row * columns..][..columns]);
                 let J = self.hand.tip_kinematics(finger, &posture).J_v;
-                flat.extend((0..3).flat_map(|axis| (0..columns).map(move |joint| J[(axis, joint)])));
+                for (axis, line) in
+                    flat[3 * columns * row..][..3 * columns].chunks_exact_mut(columns).enumerate()
+                {
+                    line.iter_mut().enumerate().for_each(|(joint, entry)| *entry = J[(axis, joint)]);
+                }
             }
-            flat
-        });
+        })?;
         PyArray1::from_vec(py, flat).reshape([count, 3, columns])
     }
 
@@ -147,9 +191,9 @@ impl Hand {
             return Err(errors::argument(py, "centers", &shape, &format!("({count}, 3)")));
         }
         let (centers, near) = (centers.as_slice()?, near.as_slice()?);
-        let found = py.detach(|| {
-            let mut found = Vec::with_capacity(count * columns);
-            for row in 0..count {
+        let mut found = Vec::with_capacity(count * columns);
+        in_parts(py, count, INVERSES, |rows| {
+            for row in rows {
                 let p_HF = Vec3::from_column_slice(&centers[3 * row..][..3]);
                 let near = FingerJoints::from_slice(&near[row * columns..][..columns]);
                 match self.hand.inverse(finger, &p_HF, &near) {
@@ -157,8 +201,7 @@ impl Hand {
                     None => found.extend(std::iter::repeat_n(f64::NAN, columns)),
                 }
             }
-            found
-        });
+        })?;
         PyArray1::from_vec(py, found).reshape([count, columns])
     }
 }

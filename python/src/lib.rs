@@ -17,6 +17,7 @@ mod roles;
 mod run;
 mod scenario;
 mod table;
+mod template;
 mod urdf;
 mod watch;
 
@@ -46,4 +47,6 @@ mod _regrasp {
     use super::run::{Solved, solve};
     #[pymodule_export]
     use super::scenario::{Scenario, scenarios};
+    #[pymodule_export]
+    use super::template::plugin_package;
 }

@@ -1,6 +1,7 @@
 //! Grasps by themselves: force closure, margins and internal forces of many grasps at once.
 
 use crate::errors;
+use crate::watch::in_parts;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -9,6 +10,9 @@ use regrasp::api::{
     StabilityTest, Vec3,
 };
 use regrasp::plugins::stability_tests::{ForceClosure, ForceClosureSettings};
+
+/// Margins take a millisecond each: so many of them between two looks for signals.
+const MARGINS: usize = 16;
 
 /// Many grasps of equally many contacts, in arrays without gaps.
 struct Grasps<'a> {
@@ -37,23 +41,26 @@ impl Grasps<'_> {
         grasp
     }
 
-    fn all<T>(
+    /// The answers of all grasps in turn; of `part` of them between two looks for signals.
+    fn all<T: Send>(
         &self,
         py: Python<'_>,
+        part: usize,
         each: impl Fn(&ForceClosure, &Grasp<'_>, &mut Context<'_>) -> Result<T, CallError> + Sync,
-    ) -> PyResult<Vec<T>>
-    where
-        T: Send,
-    {
-        let answers: Result<Vec<T>, String> = py.detach(|| {
-            let test =
-                ForceClosure::new(ForceClosureSettings::default()).map_err(|error| error.to_string())?;
+    ) -> PyResult<Vec<T>> {
+        let fault = |error: &dyn std::fmt::Display| PyRuntimeError::new_err(error.to_string());
+        let test = ForceClosure::new(ForceClosureSettings::default()).map_err(|error| fault(&error))?;
+        let (mut answers, mut failed) = (Vec::with_capacity(self.count), None);
+        in_parts(py, self.count, part, |rows| {
             let mut context = Context::seeded(0);
-            let answer =
-                |index| each(&test, &self.grasp(index), &mut context).map_err(|error| error.to_string());
-            (0..self.count).map(answer).collect()
-        });
-        answers.map_err(PyRuntimeError::new_err)
+            for index in rows {
+                match each(&test, &self.grasp(index), &mut context) {
+                    Ok(answer) => answers.push(answer),
+                    Err(error) => failed = Some(error),
+                }
+            }
+        })?;
+        failed.map_or(Ok(answers), |error| Err(fault(&error)))
     }
 }
 
@@ -90,8 +97,9 @@ pub fn force_closure<'py>(
     cones: PyReadonlyArray3<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<bool>>> {
     let grasps = grasps(py, &points, &normals, &cones)?;
-    let verdicts = grasps
-        .all(py, |test, grasp, context| Ok(test.test(grasp, &mut Hint::default(), context)?.is_stable()))?;
+    let verdicts = grasps.all(py, 8192, |test, grasp, context| {
+        Ok(test.test(grasp, &mut Hint::default(), context)?.is_stable())
+    })?;
     Ok(PyArray1::from_vec(py, verdicts))
 }
 
@@ -107,7 +115,7 @@ pub fn closure_margins<'py>(
     length: Option<f64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let grasps = grasps(py, &points, &normals, &cones)?;
-    let margins = grasps.all(py, |test, grasp, context| {
+    let margins = grasps.all(py, MARGINS, |test, grasp, context| {
         let assessed = test.assess(grasp, length, center.map(Vec3::from), context)?;
         Ok([assessed.margin_lower, assessed.margin_upper])
     })?;
@@ -125,7 +133,7 @@ pub fn internal_forces<'py>(
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
     let grasps = grasps(py, &points, &normals, &cones)?;
     let size = grasps.size;
-    let forces = grasps.all(py, |test, grasp, context| {
+    let forces = grasps.all(py, MARGINS, |test, grasp, context| {
         Ok(match test.assess(grasp, None, None, context)?.certificate {
             Certificate::InternalForce { forces_O, .. } => {
                 forces_O.iter().flat_map(|force| force.iter().copied()).collect()

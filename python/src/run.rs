@@ -63,7 +63,8 @@ impl Changes {
         Ok(())
     }
 
-    fn check(&self, py: Python<'_>) -> PyResult<()> {
+    /// Refuses limits outside of their ranges.
+    pub fn check(&self, py: Python<'_>) -> PyResult<()> {
         if let Some(limit) = self.time_limit.filter(|limit| !(0.001..=1e7).contains(limit)) {
             return Err(errors::argument(py, "time_limit", &limit.to_string(), "0.001..=10000000 s"));
         }

@@ -56,8 +56,13 @@ pub struct Table {
 /// The columns of a plan; `Err` where a state has other fingers or joints than the first.
 pub fn table(plan: &Plan) -> Result<Table, String> {
     let first = states(plan).next();
-    let fingers = first.map_or(0, |state| state.joints.len());
-    let joints = first.map_or(0, |state| state.joints.iter().map(Vec::len).sum());
+    // A plan without a motion has the columns of its hand.
+    let hand = &plan.scenario.problem.hand.finger;
+    let fingers = first.map_or(hand.len(), |state| state.joints.len());
+    let joints = first.map_or_else(
+        || hand.iter().map(|finger| finger.joint.len()).sum(),
+        |state| state.joints.iter().map(Vec::len).sum(),
+    );
     let mut table = Table { fingers, joints, ..Table::default() };
     for (row, state) in states(plan).enumerate() {
         table.push(state);

@@ -6,6 +6,7 @@ use regrasp::api::Interrupt;
 use regrasp::plan::StoppedBy;
 use regrasp::planner::{Clock, Progress};
 use regrasp::run::Stop;
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -141,6 +142,20 @@ pub fn beside<T: Send + 'static>(
             return Err(exception);
         }
     }
+}
+
+/// Runs `rows` calls without the GIL, `part` of them between two looks for signals: Ctrl-C ends a batch.
+pub fn in_parts(
+    py: Python<'_>,
+    rows: usize,
+    part: usize,
+    mut call: impl FnMut(Range<usize>) + Send,
+) -> PyResult<()> {
+    for start in (0..rows).step_by(part) {
+        py.detach(|| call(start..rows.min(start + part)));
+        py.check_signals()?;
+    }
+    Ok(())
 }
 
 /// The answer of `job`. A thread that nobody waits for any more never comes back from here: the interpreter

@@ -90,5 +90,5 @@ def test_a_worker_that_dies_costs_its_part_alone(tmp_path) -> None:
                 time.sleep(0.01)
             victim = next(iter(client.run(os.getpid).values()))
             os.kill(victim, signal.SIGKILL)
-            thread.join(timeout=60)
+            thread.join(timeout=400)
     pandas.testing.assert_frame_equal(counted(here), counted(studies[0]))

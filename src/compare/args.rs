@@ -3,7 +3,7 @@
 use crate::args::LibraryArgs;
 use crate::numbers::{seconds, whole};
 use clap::Args;
-use regrasp::study::compare::{MOST_SEEDS, RunKey, Shard, Suite};
+use regrasp::study::compare::{MOST_SEEDS, MeasureName, Pairs, RunKey, Shard, Suite};
 use std::path::PathBuf;
 
 /// Compare combinations of plugins: every scenario, planned by every variant with every seed, every plan
@@ -20,7 +20,7 @@ and makes no run again. A run that fails, panics or takes too long is a row of t
 is one that ends its process, the \
 next time the same command is given, or at once with `--isolate`.\n\n\
 DIR gets `runs.csv` (a row a run), `summary.csv` and `summary.md` (figures over the seeds and what may be \
-said of them), `report.html`, \
+said of them), `comparisons.csv` (a row a hypothesis, with its verdict), `report.html`, \
 `ompl/` (logs for OMPL's tools and Planner Arena), `study.json` (all that is needed to repeat it), \
 `runs.jsonl` (the runs in full) and \
 `plans/` (for each scenario the baseline's plan with the first seed).\n\n\
@@ -48,12 +48,24 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 1, MOST_SEEDS>)]
     pub seeds: Option<u64>,
     /// The first of the seeds [default: 0].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64, 0, { u64::MAX - MOST_SEEDS }>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true,
+          value_parser = whole::<u64, 0, { u64::MAX - MOST_SEEDS }>)]
     pub first_seed: Option<u64>,
     /// Choose plugins and settings of all variants that belong together, `paper` or `default`; `--use`,
     /// `--set` and `--vary` change them.
     #[arg(long, value_name = "NAME")]
     pub preset: Option<String>,
+    /// Compare each variant with the first (`baseline`), or each with each (`all`); [default: baseline]. All
+    /// hypotheses of a study are corrected together, so that more of them show less.
+    #[arg(long, value_name = "baseline|all", value_parser = pairs)]
+    pub pairs: Option<Pairs>,
+    /// Compare in these measures alone, such as `solved,planning`; by default in all that the runs have.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = measure)]
+    pub measures: Vec<MeasureName>,
+    /// Take differences within this share of the first variant's median for practically none (%), 0 to 100
+    /// [default: 10].
+    #[arg(long, value_name = "%", allow_negative_numbers = true, value_parser = percent)]
+    pub equivalence: Option<f64>,
     /// Fill a slot of all variants with another plugin; can be repeated.
     #[arg(long = "use", value_name = "SLOT=ID")]
     pub uses: Vec<String>,
@@ -87,15 +99,26 @@ pub struct CompareArgs {
     /// Leave out scenarios that a variant's plugins do not support, instead of refusing the study.
     #[arg(long)]
     pub skip_unsupported: bool,
+    /// Show the growing report as a page on the loopback address of this machine, whose address is printed to
+    /// standard error; it ends with the study.
+    #[arg(long)]
+    pub watch: bool,
     /// Make only the I-th of N parts of the study.
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub shard: Option<Shard>,
     /// Join the parts in these folders.
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = [
-        "scenarios", "suite", "study", "vary", "seeds", "first_seed", "preset", "uses", "sets", "load", "time_limit", "max_nodes",
-        "threads", "skip_unsupported", "shard",
+        "scenarios", "suite", "study", "vary", "seeds", "first_seed", "preset", "uses", "sets", "load",
+        "time_limit", "max_nodes", "threads", "skip_unsupported", "shard",
     ])]
     pub merge: Vec<PathBuf>,
+    /// Set the finished study in the output folder beside this older one: another commit, another machine. No
+    /// run is made; the folder gets `against.csv` and `against.md`.
+    #[arg(long, value_name = "DIR", conflicts_with_all = [
+        "scenarios", "suite", "study", "vary", "seeds", "first_seed", "preset", "uses", "sets", "load",
+        "time_limit", "max_nodes", "threads", "skip_unsupported", "shard", "merge", "pairs", "watch",
+    ])]
+    pub against: Option<PathBuf>,
     /// The folder of the study. If the same command began it before, the command continues it.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
@@ -123,6 +146,10 @@ impl CompareArgs {
         self.libraries.load.iter().for_each(|path| option("load", Some(path.display().to_string())));
         option("time-limit", self.time_limit.map(|limit| limit.to_string()));
         option("max-nodes", self.max_nodes.map(|nodes| nodes.to_string()));
+        option("pairs", self.pairs.map(|pairs| pairs.name().to_owned()));
+        let measures: Vec<&str> = self.measures.iter().map(|measure| measure.name()).collect();
+        option("measures", (!measures.is_empty()).then(|| measures.join(",")));
+        option("equivalence", self.equivalence.map(|percent| percent.to_string()));
         words.extend(self.audit.then(|| "--audit".to_owned()));
         words.extend(self.skip_unsupported.then(|| "--skip-unsupported".to_owned()));
         words
@@ -132,6 +159,22 @@ impl CompareArgs {
 fn suite(text: &str) -> Result<Suite, String> {
     let named = |suite: &Suite| suite.name() == text;
     Suite::ALL.into_iter().find(named).ok_or_else(|| "it must be `paper` or `all`".to_owned())
+}
+
+fn pairs(text: &str) -> Result<Pairs, String> {
+    let named = |pairs: &Pairs| pairs.name() == text;
+    Pairs::ALL.into_iter().find(named).ok_or_else(|| "it must be `baseline` or `all`".to_owned())
+}
+
+fn measure(text: &str) -> Result<MeasureName, String> {
+    let names = MeasureName::ALL.map(MeasureName::name).join("`, `");
+    let named = |measure: &MeasureName| measure.name() == text;
+    MeasureName::ALL.into_iter().find(named).ok_or_else(|| format!("it must be among `{names}`"))
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|percent| (0.0..=100.0).contains(percent));
+    number.ok_or_else(|| "it must be a number in 0..=100, such as 10".to_owned())
 }
 
 fn only(text: &str) -> Result<RunKey, String> {
@@ -169,5 +212,11 @@ mod tests {
     fn suites_are_named() {
         assert_eq!(suite("paper"), Ok(Suite::Paper));
         assert!(suite("papers").is_err());
+        assert_eq!(
+            (pairs("all"), measure("collision-tests")),
+            (Ok(Pairs::All), Ok(MeasureName::CollisionTests))
+        );
+        assert!(measure("speed").unwrap_err().contains("`planning`"));
+        assert!(percent("-1").is_err() && percent("nan").is_err() && percent("5") == Ok(5.0));
     }
 }

@@ -1,21 +1,46 @@
 //! What `compare` says about a study.
 
+use crate::quantity::span;
 use crate::table::Table;
+use crate::terminal::{Paint, paint};
 use regrasp::study::compare::statistics::{quantile, sorted};
-use regrasp::study::compare::{self, Cell, PaperRow, RunRecord, RunStatus, Study};
+use regrasp::study::compare::summary::{self, Finding};
+use regrasp::study::compare::{
+    self, Cell, Comparison, Family, Figure, Measure, PaperRow, Question, RunRecord, RunStatus, Study,
+};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// A row for each scenario and variant; where nothing is compared but with what was published, the paper's
-/// table.
+/// A row for each scenario and variant, then what may be said; where nothing is compared but with what was
+/// published, the paper's table.
 pub fn text(study: &Study, records: &[RunRecord]) -> String {
-    let cells: Vec<Cell<'_>> = compare::analyse(study, records).into_iter().flatten().collect();
+    let rows = compare::analyse(study, records);
+    let family = compare::judge_all(study, &rows);
     let published = study.scenarios.iter().any(|scenario| scenario.paper.is_some());
-    let text = match study.variants.len() == 1 && published {
-        true => paper(cells),
-        false => table(&cells),
-    };
-    text + &left_out(study)
+    if study.variants.len() == 1 && published {
+        return paper(rows.into_iter().flatten().collect()) + &left_out(study);
+    }
+    let said: String = rows.iter().enumerate().map(|(k, row)| said(study, k, row, &family)).collect();
+    table(&rows, &family) + &said + &stated(study, &family) + &left_out(study)
+}
+
+/// What may be said of a scenario, in the words of `summary.md`.
+fn said(study: &Study, k: usize, row: &[Cell<'_>], family: &Family) -> String {
+    let Finding { lead, lines } = summary::finding(study, k, row, family, &quoted);
+    if lines.is_empty() {
+        return String::new();
+    }
+    let lines: String = lines.iter().map(|line| format!("    {line}\n")).collect();
+    format!("\n  {}. {lead}\n{lines}", paint(Paint::Head, &study.scenarios[k].name))
+}
+
+fn stated(study: &Study, family: &Family) -> String {
+    let text = summary::family_text(study, family, &quoted);
+    if text.is_empty() { text } else { format!("\n  {text}\n") }
+}
+
+fn quoted(name: &str) -> String {
+    format!("`{name}`")
 }
 
 fn paper(cells: Vec<Cell<'_>>) -> String {
@@ -26,27 +51,38 @@ fn paper(cells: Vec<Cell<'_>>) -> String {
     compare::paper_table(&rows)
 }
 
-fn table(cells: &[Cell<'_>]) -> String {
-    let head =
-        ["scenario", "variant", "solved", "verified", "median ms", "90 % ms", "time ratio", "p (Holm)"];
+fn table(rows: &[Vec<Cell<'_>>], family: &Family) -> String {
+    let head = ["scenario", "variant", "solved", "verified", "median", "90 %", "planning", "p (Holm)"];
     let mut table = Table::new("<<>", &head);
-    for cell in cells {
+    for (k, cell) in rows.iter().enumerate().flat_map(|(k, row)| row.iter().map(move |cell| (k, cell))) {
         let of = |count: usize| format!("{count}/{}", cell.runs.len());
-        let ms = |share| planning_s(cell, share).map_or("-".to_owned(), |s| format!("{:.1}", s * 1e3));
-        let compared = cell.compared.as_ref();
-        let ratio = compared.and_then(|compared| compared.paired.ratio);
+        let time = |share| planning_s(cell, share).map_or("-".to_owned(), span);
+        let against = planning(family, k, cell.index);
         table.row([
             cell.scenario.name.clone(),
             cell.variant.name.clone(),
             of(cell.count(RunStatus::Solved)),
             of(cell.successes().count()),
-            ms(0.5),
-            ms(0.9),
-            ratio.map_or("-".to_owned(), |ratio| format!("{:.2}", ratio.value)),
-            compared.map_or("-".to_owned(), |compared| p_value(compared.time_p)),
+            time(0.5),
+            time(0.9),
+            against.map_or("-".to_owned(), |found| match found.is_better() {
+                1 => paint(Paint::Good, &summary::cell(found)),
+                -1 => paint(Paint::Bad, &summary::cell(found)),
+                _ => summary::cell(found),
+            }),
+            against.map_or("-".to_owned(), |found| p_value(found.p_holm)),
         ]);
     }
     table.text()
+}
+
+/// The comparison of a variant's planning time with the first variant's.
+fn planning(family: &Family, scenario: usize, variant: usize) -> Option<&Comparison> {
+    let wanted = |found: &&Comparison| {
+        found.question == Question::Pair { a: variant, b: 0 }
+            && found.measure == Measure::Figure(Figure::Planning)
+    };
+    family.on(scenario).iter().find(wanted)
 }
 
 fn p_value(p: f64) -> String {
@@ -67,16 +103,16 @@ fn left_out(study: &Study) -> String {
 
 /// The one JSON object of `compare --json`.
 pub fn json(study: &Study, records: &[RunRecord], folder: &Path) -> Value {
-    let cell = |cell: Cell<'_>| {
+    let rows = compare::analyse(study, records);
+    let family = compare::judge_all(study, &rows);
+    let cell = |cell: &Cell<'_>| {
         json!({
             "scenario": cell.scenario.name,
             "variant": cell.variant.name,
             "runs": cell.runs.len(),
             "solved": cell.count(RunStatus::Solved),
             "verified": cell.successes().count(),
-            "planning_s": planning_s(&cell, 0.5),
-            "time_ratio": cell.compared.as_ref().and_then(|compared| compared.paired.ratio).map(|ratio| ratio.value),
-            "time_p": cell.compared.as_ref().map(|compared| compared.time_p),
+            "planning_s": planning_s(cell, 0.5),
         })
     };
     json!({
@@ -85,7 +121,39 @@ pub fn json(study: &Study, records: &[RunRecord], folder: &Path) -> Value {
         "verified": records.iter().filter(|record| record.is_success()).count(),
         "seeds": study.seeds,
         "shard": study.shard,
-        "rows": compare::analyse(study, records).into_iter().flatten().map(cell).collect::<Vec<_>>(),
+        "rows": rows.iter().flatten().map(cell).collect::<Vec<_>>(),
+        "family": summary::family_text(study, &family, &quoted),
+        "comparisons": comparisons(study, &family),
         "left_out": study.left_out,
+    })
+}
+
+/// Every hypothesis with its verdict, in SI units.
+pub fn comparisons(study: &Study, family: &Family) -> Vec<Value> {
+    let one = |found: &Comparison| {
+        json!({
+            "scenario": study.scenarios[found.scenario].name,
+            "subject": summary::subject(study, &found.question, &quoted),
+            "measure": found.measure.column(),
+            "seeds": found.pairs,
+            "difference": found.difference.map(|difference| difference.value),
+            "low": found.difference.map(|difference| difference.low).filter(|low| low.is_finite()),
+            "high": found.difference.map(|difference| difference.high).filter(|high| high.is_finite()),
+            "band": found.band,
+            "p_holm": found.p_holm,
+            "verdict": found.verdict.name(),
+            "says": summary::clause(found),
+        })
+    };
+    family.comparisons.iter().map(one).collect()
+}
+
+/// The one JSON object of `compare --against --json`.
+pub fn against(against: &compare::Against, folder: &Path, older: &Path) -> Value {
+    json!({
+        "folder": folder,
+        "against": older,
+        "differs": against.differs,
+        "comparisons": comparisons(&against.study, &against.family),
     })
 }

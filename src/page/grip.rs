@@ -42,7 +42,7 @@ fn held(
     let cone = plan.claims.contact.cone;
     // Without an elliptic cone the plan's own forces can be shown, and no others be chosen.
     let friction = match cone {
-        Some(cone) => Friction { mu: cone.mu, gamma: cone.gamma },
+        Some(cone) => Friction::of(&cone.cone())?,
         None if motion.segments.iter().any(|segment| !segment.forces.is_empty()) => {
             Friction::point(object.friction)
         }

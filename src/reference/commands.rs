@@ -9,7 +9,9 @@ pub fn page(mut program: Command) -> String {
     let mut text = format!("{GENERATED}# Commands\n\n{}.\n\n", described(&program));
     text += "Every command has `--help`, which says the same as this page. What went wrong is said on \
         standard error; standard output has the \
-             results alone. [Exit codes](exit-codes.md) tell a script how a command ended.\n\n";
+             results alone. Every command takes `--color auto|always|never`: `auto` colours what goes to a \
+             terminal, and heeds `NO_COLOR`, `CLICOLOR` and `CLICOLOR_FORCE`. [Exit codes](exit-codes.md) tell a \
+             script how a command ended.\n\n";
     let shown =
         || program.get_subcommands().filter(|command| !command.is_hide_set() && command.get_name() != "help");
     let rows: Vec<Vec<String>> =
@@ -27,7 +29,7 @@ fn section(command: &Command) -> String {
     text += &format!("{}.\n\n", described(command));
     let usage = command.clone().render_usage().to_string();
     text += &block("text", usage.trim_start_matches("Usage: "));
-    let help = |arg: &&Arg| arg.get_id() != "help" && !arg.is_hide_set();
+    let help = |arg: &&Arg| arg.get_id() != "help" && !arg.is_hide_set() && !arg.is_global_set();
     let arguments: Vec<Vec<String>> = command.get_positionals().filter(help).map(argument).collect();
     if !arguments.is_empty() {
         text += &table(&["argument", "meaning"], &arguments);

@@ -1,5 +1,6 @@
 //! Opening a page in the user's browser.
 
+use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -11,8 +12,17 @@ const PATIENCE: Duration = Duration::from_millis(1500);
 
 /// Opens a page in the browser; whether that seems to have worked.
 pub fn in_browser(page: &Path) -> bool {
+    opened(page.as_os_str())
+}
+
+/// Opens an address in the browser; whether that seems to have worked.
+pub fn address_in_browser(address: &str) -> bool {
+    opened(address.as_ref())
+}
+
+fn opened(what: &OsStr) -> bool {
     let Some(mut command) = opener() else { return false };
-    command.arg(page).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.arg(what).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     let Ok(mut child) = command.spawn() else { return false };
     // Some openers stay until the browser is closed: who still runs after a while has not failed.
     for _ in 0..15 {

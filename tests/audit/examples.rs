@@ -1,6 +1,6 @@
 //! The example plugins keep every law in a real problem.
 
-use regrasp::api::Slot;
+use regrasp::api::{Slot, Vec3};
 use regrasp::run::{Depth, NeverStops, RunOptions};
 use regrasp::{Stopwatch, load, setup};
 use regrasp_example_plugins as _;
@@ -22,5 +22,47 @@ fn the_examples_keep_the_laws_in_a_real_problem() {
         let (run, case) = setup(&scenario).unwrap().run_audited(&options, Depth::Full);
         assert!(case.is_none(), "{id}: {:?}", case.map(|case| case.breach));
         assert!(run.unwrap().is_verified(), "{id}");
+    }
+}
+
+/// A plan on `sphere` with these plugins, and the note of the verifier's check of stability.
+fn planned(contact_model: &str, test: &str) -> (regrasp::plan::Plan, Option<String>) {
+    let mut scenario = load("sphere").unwrap();
+    scenario.choices.use_plugin(Slot::ContactModel, contact_model);
+    scenario.choices.use_plugin(Slot::StabilityTest, test);
+    let watch = Stopwatch::start();
+    let options = RunOptions { stop: &NeverStops, ..watch.options(1) };
+    let run = setup(&scenario).unwrap().run(&options).unwrap();
+    assert!(run.is_verified(), "{contact_model}, {test}: {:?}", run.why_not_solved());
+    let stability = run.verdict.iter().flat_map(|verdict| &verdict.checks).find(|c| c.name == "stability");
+    let check = stability.expect("stability is checked").clone();
+    assert!(check.ok && check.worst.is_some(), "{check:?}");
+    (run.plan.expect("it was verified"), check.place.note)
+}
+
+#[test]
+fn a_grain_goes_all_the_way_from_the_model_to_the_verdict() {
+    for test in ["force-closure", "equilibrium", "holding"] {
+        let (plan, note) = planned("grained", test);
+        let cone = plan.claims.contact.cone.expect("all contacts share the grain");
+        let grain = cone.grain.expect("it is recorded");
+        assert_eq!(grain.axis_O, [0.0, 0.0, 1.0]);
+        assert!((grain.mu_across - 0.9 * cone.mu).abs() < 1e-12, "{test}");
+        assert!(!note.unwrap_or_default().contains("not independently checked"), "{test}");
+        if test == "holding" {
+            let forces = plan.segments.iter().flat_map(|segment| &segment.states);
+            assert!(forces.clone().count() > 0 && forces.clone().all(|state| state.forces.is_some()));
+            // Forces that need more across the grain than there is there would be a fault of the plan.
+            let regrasp::api::Cone::Grained(grain) = cone.cone() else { panic!("it is grained") };
+            let contacts = forces.flat_map(|state| {
+                let each = state.contacts.iter().zip(state.forces.iter().flatten());
+                each.filter_map(|(contact, force)| Some((contact.as_ref()?, force.as_ref()?)))
+            });
+            for (contact, force) in contacts.take(2000) {
+                let (n, f) = (Vec3::from(contact.normal_O), Vec3::from(*force));
+                let used = grain.at(&n).map(|(tangent, mu)| f.dot(&tangent) / mu);
+                assert!(used[0].hypot(used[1]) <= -f.dot(&n) * (1.0 + 1e-6), "{used:?}");
+            }
+        }
     }
 }

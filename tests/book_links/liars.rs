@@ -24,8 +24,9 @@ const GOOD: &[(&str, &str)] = &[
     (
         "book/src/deep/two.md",
         "# Two {#second}\n\n## The `--option` of plan (x)\n\n<a \
-         id=\"by-hand\"></a>\n\n![ball](../ball.svg)\n\n```rust\n\
-         {{#include ../../../code.rs:shown}}\n{{#include ../../../code.rs:1:2}}\n```\n\n\
+         id=\"by-hand\"></a>\n\n![ball](../ball.svg)\n\n\
+         <!-- listing: ../../../code.rs:shown -->\n```rust\nfn shown() {}\n```\n\n\
+         <!-- listing: ../../../code.rs:1:2 -->\n```rust\nfn shown() {}\n```\n\n\
          ```\n$ regrasp plan ball \\\n      --set a.b=-1 --seed=3 > log   # no --such \
          option\n```\n\n[out](https://example.org/x#y)\n\n\
          ```toml\n[object]\nfriction = 0.5\nshape = { kind = \"cuboid\", size = [0.04, 0.04, 0.04] }\n```\n\n\
@@ -120,6 +121,15 @@ fn included_code_that_is_not_there_is_found() {
     );
     assert!(liar("book/src/deep/two.md", "code.rs:shown", "code.rs:hidden").contains("no `ANCHOR: hidden`"));
     assert!(liar("code.rs", "// ANCHOR_END: shown", "").contains("no `ANCHOR: shown` with its end"));
+    let (link, include) = ("[out](https", "{{#include ../../../code.rs:shown}}\n\n[out](https");
+    assert!(liar("book/src/deep/two.md", link, include).contains("mdBook alone"));
+}
+
+#[test]
+fn a_listing_that_is_not_its_file_is_found() {
+    let shown = "code.rs:shown -->\n```rust\nfn shown() {}";
+    let other = shown.replace("shown() {}", "other() {}");
+    assert!(liar("book/src/deep/two.md", shown, &other).contains("is listed as it was"));
 }
 
 #[test]

@@ -16,8 +16,18 @@ pub struct Page {
     pub tables: Vec<(usize, String)>,
     /// The blocks that a comment says to be printed by a command.
     pub outputs: Vec<Output>,
-    /// What `{{#include …}}` names, with the line it stands in.
+    /// What `{{#include …}}` names, with the line it stands in: mdBook alone shows it: no page has any.
     pub includes: Vec<(usize, String)>,
+    /// The blocks that a comment says to be a piece of a file.
+    pub listings: Vec<Listing>,
+}
+
+/// A block with the piece of a file that it shows: `file`, `file:anchor` or `file:from:to`.
+#[derive(Debug)]
+pub struct Listing {
+    pub line: usize,
+    pub target: String,
+    pub text: String,
 }
 
 /// A block with the command that printed it.
@@ -30,8 +40,7 @@ pub struct Output {
 
 impl Page {
     pub fn read(text: &str) -> Self {
-        let mut reader =
-            Reader { page: Self { includes: includes(text), ..Self::default() }, ..Reader::default() };
+        let mut reader = Reader { page: Self::of_lines(text), ..Reader::default() };
         let options = Options::ENABLE_TABLES
             | Options::ENABLE_FOOTNOTES
             | Options::ENABLE_STRIKETHROUGH
@@ -45,6 +54,11 @@ impl Page {
             reader.take(event);
         }
         reader.page
+    }
+
+    /// What is found line by line.
+    fn of_lines(text: &str) -> Self {
+        Self { includes: includes(text), listings: listings(text), ..Self::default() }
     }
 
     /// mdBook's rule: letters, digits, `_` and `-` are kept, spaces become `-`, and what was there before
@@ -132,6 +146,20 @@ impl Reader {
 fn attributes(html: &str, name: &str) -> Vec<String> {
     let begins = format!(" {name}=\"");
     html.split(&begins).skip(1).filter_map(|rest| Some(rest.split_once('"')?.0.to_owned())).collect()
+}
+
+fn listings(text: &str) -> Vec<Listing> {
+    let mut lines = text.lines().enumerate();
+    let mut found = Vec::new();
+    while let Some((k, line)) = lines.next() {
+        let mark = line.strip_prefix("<!-- listing: ").and_then(|rest| rest.strip_suffix(" -->"));
+        let Some(target) = mark else { continue };
+        let opens = lines.next().is_some_and(|(_, line)| line.starts_with("```"));
+        let body = lines.by_ref().take_while(|(_, line)| opens && *line != "```");
+        let text = body.map(|(_, line)| format!("{line}\n")).collect();
+        found.push(Listing { line: k + 1, target: target.to_owned(), text });
+    }
+    found
 }
 
 fn includes(text: &str) -> Vec<(usize, String)> {

@@ -1,6 +1,6 @@
 //! A checkout's book and documents, and what is wrong with them.
 
-use crate::markdown::Page;
+use crate::markdown::{Listing, Page};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -47,9 +47,13 @@ impl Tree {
                     Err(fault) => faults.push(format!("{}:{line}: {fault}", file.display())),
                 }
             }
-            let included = page.includes.iter().map(|(line, target)| (line, self.include(file, target)));
+            let included = page.includes.iter().map(|(line, target)| {
+                format!("{}:{line}: `{target}` is shown by mdBook alone; make it a listing", file.display())
+            });
+            faults.extend(included);
+            let listed = page.listings.iter().map(|listing| (listing.line, self.listing(file, listing)));
             faults.extend(
-                included.filter_map(|(line, fault)| Some(format!("{}:{line}: {}", file.display(), fault?))),
+                listed.filter_map(|(line, fault)| Some(format!("{}:{line}: {}", file.display(), fault?))),
             );
         }
         let unused = self.others.iter().filter(|file| !reached.contains(*file));
@@ -85,19 +89,27 @@ impl Tree {
         Ok(Some(target))
     }
 
-    /// What is wrong with an included `file` or `file:anchor` or `file:from:to`.
-    fn include(&self, from: &Path, target: &str) -> Option<String> {
+    /// What is wrong with a listing.
+    fn listing(&self, from: &Path, listing: &Listing) -> Option<String> {
+        let target = listing.target.as_str();
         let (path, part) = target.split_once(':').unwrap_or((target, ""));
         let file = tidy(&from.with_file_name("").join(path));
         let Some(text) = file.and_then(|file| fs::read_to_string(self.root.join(file)).ok()) else {
-            return Some(format!("`{target}` is included, but there is no such file"));
+            return Some(format!("`{target}` is listed, but there is no such file"));
         };
         let is_range = part.split(':').all(|number| number.is_empty() || number.parse::<usize>().is_ok());
         let marked = |mark: &str| {
             text.lines().any(|line| line.split_once(mark).is_some_and(|(_, name)| name.trim() == part))
         };
         let found = is_range || marked("ANCHOR:") && marked("ANCHOR_END:");
-        (!found).then(|| format!("`{target}` is included, but {path} has no `ANCHOR: {part}` with its end"))
+        if !found {
+            return Some(format!("`{target}` is listed, but {path} has no `ANCHOR: {part}` with its end"));
+        }
+        (listing.text != piece(&text, part)).then(|| {
+            format!(
+                "`{target}` is listed as it was; `cargo run -- reference book/src/reference` lists it anew"
+            )
+        })
     }
 
     /// Pages that the table of contents forgets, or names twice.
@@ -147,4 +159,26 @@ fn walk(root: &Path, folder: &Path, files: &mut Vec<PathBuf>) {
             files.push(path);
         }
     }
+}
+
+/// The lines of a piece of a file, without the marks of anchors: all where `part` is empty, of an anchor, or
+/// of a range of lines counted from 1.
+fn piece(text: &str, part: &str) -> String {
+    let is_mark = |line: &str| line.contains("ANCHOR:") || line.contains("ANCHOR_END:");
+    let ends = |line: &str, mark: &str| line.split_once(mark).is_some_and(|(_, name)| name.trim() == part);
+    let lines: Vec<&str> = text.lines().collect();
+    let number = |text: &str| text.parse::<usize>().ok();
+    let (from, to) = match part.split_once(':') {
+        _ if part.is_empty() => (0, lines.len()),
+        Some((from, to)) => (number(from).map_or(0, |from| from - 1), number(to).unwrap_or(lines.len())),
+        None => match number(part) {
+            Some(line) => (line - 1, line),
+            None => {
+                let at = |mark: &str| lines.iter().position(|line| ends(line, mark)).unwrap_or(0);
+                (at("ANCHOR:") + 1, at("ANCHOR_END:"))
+            }
+        },
+    };
+    let shown = lines.get(from..to).unwrap_or_default().iter().filter(|line| !is_mark(line));
+    shown.map(|line| format!("{line}\n")).collect()
 }

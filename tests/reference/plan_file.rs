@@ -2,7 +2,9 @@
 
 use crate::{page, printed};
 use regrasp::api::{Body, Figure, FingerIndex, Slot, check_schema};
-use regrasp::plan::{ConeClaim, ConeRecord, ContactSurface, EdgeRecord, Extreme, Holds, HoldsAt, Plan};
+use regrasp::plan::{
+    ConeClaim, ConeRecord, ContactSurface, EdgeRecord, Extreme, GrainClaim, Holds, HoldsAt, Plan,
+};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -87,7 +89,9 @@ fn full(plan: &Value) -> Value {
     let twin = ContactSurface { vertices: vec![], facets: vec![], digest: String::new(), bound: 0.0 };
     plan.object.get_or_insert_default().contact_surface = Some(twin);
     let edge = EdgeRecord { tangential: [0.5, 0.0], torsion: 0.0 };
-    let cone = ConeClaim { mu: 0.5, gamma: 0.0 };
+    let grain = GrainClaim { mu_across: 0.25, axis_O: [0.0, 0.0, 1.0] };
+    let cone = ConeClaim { grain: Some(grain), ..ConeClaim::round(0.5, 0.0) };
+    plan.claims.contact.cone = Some(cone);
     plan.claims.contact.cones = vec![ConeRecord::Elliptic(cone), ConeRecord::Polyhedral(vec![edge])];
     plan.notes.insert(Slot::Sampler, [("hits".to_owned(), Figure::one(1.0))].into());
     let figure = || Extreme::new(1.0, Default::default(), HoldsAt::EveryState);

@@ -31,9 +31,9 @@ impl Settings for GrainedSettings {}
 struct Grained(GrainedSettings);
 
 impl ContactModel for Grained {
-    fn cone(&self, _finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
+    fn cone(&self, _finger: FingerIndex, _contact: &Contact, mu: f64) -> Cone<'_> {
         // On the ends, where the grain meets the surface head on, the smaller coefficient counts all round.
-        Cone::grained(&contact.n_O, &Vec3::z(), [mu, self.0.across * mu], self.0.gamma)
+        Cone::grained(&Vec3::z(), [mu, self.0.across * mu], self.0.gamma)
     }
 
     fn fewest_contacts(&self) -> usize {
@@ -45,7 +45,7 @@ impl ContactModel for Grained {
 pub const ENTRY: Entry = Entry {
     id: "contact-model/grained",
     slots: &[Slot::ContactModel],
-    summary: "friction along the object's grain and across it, as a polyhedral cone",
+    summary: "friction along the object's grain and across it, as an exact elliptic cone",
     references: &["Goyal, Ruina, Papadopoulos, Planar sliding with dry friction, Wear 143, 1991"],
     schema: GrainedSettings::schema,
     check: check_settings::<GrainedSettings>,

@@ -17,6 +17,9 @@ pub enum Cone<'a> {
         /// Torsional friction radius (m).
         gamma: f64,
     },
+    /// Friction that differs along and across a grain, and a torque about the normal: an elliptic cone with
+    /// two coefficients.
+    Grained(Box<Grain>),
     /// The cone spanned by edges in the contact frame, each with unit normal component: lent by the model
     /// that has them ready, or made for this contact (`Cone::Polyhedral(edges.into())`).
     Polyhedral(Cow<'a, [ConeEdge]>),
@@ -27,33 +30,11 @@ impl Cone<'_> {
     pub const FRICTIONLESS: Cone<'static> = Cone::Elliptic { mu: 0.0, gamma: 0.0 };
 
     /// A cone of two coefficients of friction, for contacts with a grain: `mu[0]` along the tangential part
-    /// of `grain_O` (a vector in O, of any length), `mu[1]` across it, and the torsional radius `gamma` (m),
-    /// for the *outward* unit normal `n_O`.
+    /// of `axis_O` (a vector in O, of any length), `mu[1]` across it, and the torsional radius `gamma` (m).
     ///
-    /// It is the polyhedron of [`GRAIN_EDGES`] edges inscribed in the elliptic cone, in each of five planes
-    /// of torsion where `gamma` is positive: nowhere wider, and at most 2 % narrower without torsion, 10 %
-    /// with it. A grain along the normal has no direction: then the smaller coefficient counts all round.
-    pub fn grained(n_O: &Vec3, grain_O: &Vec3, mu: [f64; 2], gamma: f64) -> Cone<'static> {
-        let inward = -n_O;
-        let [t1, t2] = tangents(&inward);
-        let (x, y) = (grain_O.dot(&t1), grain_O.dot(&t2));
-        let length = x.hypot(y);
-        let least = mu[0].min(mu[1]);
-        let (grain, mu) =
-            if length > 1e-9 { ([x / length, y / length], mu) } else { ([1.0, 0.0], [least; 2]) };
-        let mut edges = Vec::new();
-        let levels: std::ops::RangeInclusive<i32> = if gamma > 0.0 { -2..=2 } else { 0..=0 };
-        for level in levels {
-            let (sin, cos) = (f64::from(level) * std::f64::consts::FRAC_PI_4).sin_cos();
-            let corners = if level.abs() == 2 { 1 } else { GRAIN_EDGES };
-            edges.extend((0..corners).map(|k| {
-                let (b, a) = (std::f64::consts::TAU * k as f64 / GRAIN_EDGES as f64).sin_cos();
-                let (along, across) = (cos * mu[0] * a, cos * mu[1] * b);
-                let tangential = [grain[0] * along - grain[1] * across, grain[1] * along + grain[0] * across];
-                ConeEdge { tangential, torsion: gamma * sin }
-            }));
-        }
-        Cone::Polyhedral(edges.into())
+    /// Exact; see [`Grain`].
+    pub fn grained(axis_O: &Vec3, mu: [f64; 2], gamma: f64) -> Cone<'static> {
+        Cone::Grained(Box::new(Grain { mu, gamma, axis_O: *axis_O }))
     }
 
     /// The wrenches of the cone that have no torque about the normal: what a contact transmits while it may
@@ -64,6 +45,7 @@ impl Cone<'_> {
     pub fn without_torsion(&self) -> Cone<'static> {
         match self {
             Self::Elliptic { mu, .. } => Cone::Elliptic { mu: *mu, gamma: 0.0 },
+            Self::Grained(grain) => Cone::Grained(Box::new(Grain { gamma: 0.0, ..**grain })),
             Self::Polyhedral(edges) => {
                 let flat = edges.iter().filter(|edge| edge.torsion == 0.0).copied();
                 let (above, below) = (side(edges, 1.0), side(edges, -1.0));
@@ -77,6 +59,7 @@ impl Cone<'_> {
     pub fn into_owned(self) -> Cone<'static> {
         match self {
             Self::Elliptic { mu, gamma } => Cone::Elliptic { mu, gamma },
+            Self::Grained(grain) => Cone::Grained(grain),
             Self::Polyhedral(edges) => Cone::Polyhedral(edges.into_owned().into()),
         }
     }
@@ -85,13 +68,51 @@ impl Cone<'_> {
     pub fn carries_torsion(&self) -> bool {
         match self {
             Self::Elliptic { gamma, .. } => *gamma != 0.0,
+            Self::Grained(grain) => grain.gamma != 0.0,
             Self::Polyhedral(edges) => edges.iter().any(|edge| edge.torsion != 0.0),
         }
     }
 }
 
-/// How many edges [`Cone::grained`] has in a plane.
-pub const GRAIN_EDGES: usize = 16;
+/// Friction with a grain: f_a²/μ_a² + f_b²/μ_b² + m²/γ² ≤ f_n², with f_a the tangential force along the grain
+/// and f_b the one across it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grain {
+    /// Coefficients of friction along and across the grain, at least 0, no unit.
+    pub mu: [f64; 2],
+    /// Torsional friction radius (m), at least 0.
+    pub gamma: f64,
+    /// Where the grain runs: a vector in O of any length, of which the part in the contact's tangent plane
+    /// counts. One that stands on the contact has no direction there: then the smaller coefficient counts
+    /// all round.
+    pub axis_O: Vec3,
+}
+
+impl Grain {
+    /// The grain's tangential directions at a contact with the unit normal `n_O`, of either sign: along and
+    /// across, both unit vectors in O, with their coefficients.
+    pub fn at(&self, n_O: &Vec3) -> [(Vec3, f64); 2] {
+        let flat = self.axis_O - n_O * n_O.dot(&self.axis_O);
+        let length = flat.norm();
+        if length > STANDING * self.axis_O.norm() {
+            let along = flat / length;
+            return [(along, self.mu[0]), (n_O.cross(&along), self.mu[1])];
+        }
+        let least = self.mu[0].min(self.mu[1]);
+        tangents(n_O).map(|tangent| (tangent, least))
+    }
+
+    /// The same as a smaller coefficient μ all round and a tangential vector g (in O) that adds to it: the
+    /// most power on a tangential velocity v is √(μ² |v|² + (g·v)²), without torsion.
+    pub fn spread(&self, n_O: &Vec3) -> (f64, Vec3) {
+        let [a, b] = self.at(n_O);
+        let (less, more) = if a.1 <= b.1 { (a, b) } else { (b, a) };
+        (less.1, more.0 * (more.1 * more.1 - less.1 * less.1).max(0.0).sqrt())
+    }
+}
+
+/// An axis whose tangential part is shorter than this share of it stands on the contact.
+const STANDING: f64 = 1e-9;
 
 /// The tangents that edges of polyhedral cones are given along, for the *inward* unit normal `n`: t1 =
 /// [`any_orthogonal`]`(n)`, t2 = n × t1.
@@ -225,18 +246,23 @@ mod tests {
     }
 
     #[test]
-    fn a_grain_has_its_coefficients_along_and_across_in_every_frame() {
-        let (n_O, grain_O) = (Vec3::new(0.36, 0.48, 0.8), Vec3::new(0.3, -2.0, 1.0));
-        let cone = Cone::grained(&n_O, &grain_O, [0.9, 0.3], 0.0);
-        let [t1, t2] = tangents(&-n_O);
-        let along = (grain_O - n_O * n_O.dot(&grain_O)).normalize();
-        let across = n_O.cross(&along);
-        for (direction, mu) in [(along, 0.9), (-along, 0.9), (across, 0.3), (-across, 0.3)] {
-            let reach = support(&cone, [direction.dot(&t1), direction.dot(&t2), 0.0]);
-            assert!((reach - mu).abs() < 1e-12, "{reach} for {mu}");
+    fn a_grain_has_its_coefficients_along_and_across() {
+        let (n_O, axis_O) = (Vec3::new(0.36, 0.48, 0.8), Vec3::new(0.3, -2.0, 1.0));
+        for mu in [[0.9, 0.3], [0.3, 0.9]] {
+            let grain = Grain { mu, gamma: 0.0, axis_O };
+            let (least, g) = grain.spread(&n_O);
+            let reach = |v: &Vec3| (least * least * v.norm_squared() + g.dot(v).powi(2)).sqrt();
+            let along = (axis_O - n_O * n_O.dot(&axis_O)).normalize();
+            let across = n_O.cross(&along);
+            assert!((reach(&along) - mu[0]).abs() < 1e-12 && (reach(&across) - mu[1]).abs() < 1e-12);
+            // Between the two the support of an ellipse, whichever way the normal points.
+            let v = along * 0.6 + across * 0.8;
+            assert!((reach(&v) - (0.6 * mu[0]).hypot(0.8 * mu[1])).abs() < 1e-12);
+            let mirrored = grain.spread(&-n_O);
+            assert!(mirrored.0 == least && (mirrored.1.dot(&v).abs() - g.dot(&v).abs()).abs() < 1e-12);
         }
-        let lost = Cone::grained(&n_O, &n_O, [0.9, 0.3], 0.0);
-        assert!((support(&lost, [1.0, 0.0, 0.0]) - 0.3).abs() < 1e-12);
+        // One that stands on the contact has no direction.
+        assert_eq!(Grain { mu: [0.9, 0.3], gamma: 0.0, axis_O: n_O * 2.0 }.spread(&n_O).0, 0.3);
     }
 
     #[test]
@@ -251,17 +277,7 @@ mod tests {
         assert!((support(&slice, [0.0, 1.0, 0.0]) - 0.3).abs() < 1e-12);
         let soft = Cone::Elliptic { mu: 0.5, gamma: 0.002 };
         assert_eq!(soft.without_torsion(), Cone::Elliptic { mu: 0.5, gamma: 0.0 });
-    }
-
-    #[test]
-    fn torsion_and_friction_share_a_grained_cone() {
-        let cone = Cone::grained(&Vec3::z(), &Vec3::x(), [0.8, 0.4], 0.003);
-        assert!((support(&cone, [0.0, 0.0, 1.0]) - 0.003).abs() < 1e-12);
-        assert!(support(&cone.without_torsion(), [0.0, 0.0, 1.0]) == 0.0);
-        let widest = |k: usize| {
-            let (sin, cos) = (0.1 * k as f64).sin_cos();
-            support(&cone, [cos, sin, 0.0])
-        };
-        assert!((0..63).all(|k| widest(k) <= 0.8 + 1e-12 && widest(k) > 0.38));
+        let grained = |gamma| Cone::grained(&Vec3::x(), [0.5, 0.2], gamma);
+        assert!(grained(0.002).carries_torsion() && grained(0.002).without_torsion() == grained(0.0));
     }
 }

@@ -92,6 +92,28 @@ fn split_mix(state: &mut u64) -> u64 {
     z ^ (z >> 31)
 }
 
+/// The generator behind `rand`'s traits: `rand_core::Rng` comes with this one.
+#[cfg(feature = "rand_core")]
+impl rand_core::TryRng for Random {
+    type Error = std::convert::Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
+        // The upper half is the better one.
+        Ok((self.word() >> 32) as u32)
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
+        Ok(self.word())
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error> {
+        for part in bytes.chunks_mut(8) {
+            part.copy_from_slice(&self.word().to_le_bytes()[..part.len()]);
+        }
+        Ok(())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -125,5 +147,19 @@ mod tests {
         let mut seen = [0; 5];
         (0..5000).for_each(|_| seen[random.index(5)] += 1);
         assert!(seen.iter().all(|&count| (850..1150).contains(&count)), "{seen:?}");
+    }
+
+    #[cfg(feature = "rand_core")]
+    #[test]
+    fn rands_traits_draw_the_same_words() {
+        use rand_core::Rng;
+        let (mut own, mut theirs) = (Random::from_key(1, 2, 3, 4), Random::from_key(1, 2, 3, 4));
+        let word = own.word();
+        assert_eq!(theirs.next_u64(), word);
+        let mut bytes = [0; 11];
+        theirs.fill_bytes(&mut bytes);
+        assert_eq!(bytes[..8], own.word().to_le_bytes());
+        assert_eq!(bytes[8..], own.word().to_le_bytes()[..3]);
+        assert_eq!(theirs, own);
     }
 }

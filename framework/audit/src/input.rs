@@ -35,6 +35,9 @@ pub(crate) fn fingers(set: FingerSet) -> Value {
 fn cone(cone: &Cone<'_>) -> Value {
     match cone {
         Cone::Elliptic { mu, gamma } => json!({ "mu": mu, "gamma": gamma }),
+        Cone::Grained(grain) => {
+            json!({ "mu": grain.mu, "gamma": grain.gamma, "axis_O": vector(&grain.axis_O) })
+        }
         Cone::Polyhedral(edges) => {
             let edges: Vec<_> = edges.iter().map(|e| [e.tangential[0], e.tangential[1], e.torsion]).collect();
             json!({ "edges": edges })

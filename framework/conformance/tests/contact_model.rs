@@ -6,6 +6,8 @@ mod support;
 use regrasp_api::*;
 use regrasp_conformance::{assert_silent, check, checks};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What a liar does wrong.
@@ -24,6 +26,16 @@ enum Lie {
     Counts,
     RemembersTheFirst,
     OtherOnOtherThreads,
+    LosesTheGrainAtThePoles,
+    KnowsThreeFingers,
+    IgnoresTheFriction,
+    SquaresTheFriction,
+    DrawsEdgesOutside,
+    ThinsTorsion,
+    ThreeAreNeeded,
+    TakesTheNormalInward,
+    KeepsConesWhateverTheFriction,
+    KeepsConesByPlace,
     Prints,
 }
 
@@ -31,15 +43,37 @@ struct Liar {
     lie: Lie,
     calls: AtomicU64,
     home: std::thread::ThreadId,
+    kept: Mutex<BTreeMap<[u64; 3], Cone<'static>>>,
 }
 
 fn build(lie: Lie) -> Box<dyn ContactModel> {
-    Box::new(Liar { lie, calls: AtomicU64::new(0), home: std::thread::current().id() })
+    Box::new(Liar {
+        lie,
+        calls: AtomicU64::new(0),
+        home: std::thread::current().id(),
+        kept: Default::default(),
+    })
+}
+
+impl Liar {
+    /// What was first answered under this key.
+    fn first(&self, key: [u64; 3], cone: Cone<'static>) -> Cone<'static> {
+        self.kept.lock().unwrap().entry(key).or_insert(cone).clone()
+    }
+}
+
+/// A grain along z, as one writes it who normalises what is left of the axis in the tangent plane.
+fn grain_along_z(contact: &Contact, mu: f64) -> Cone<'static> {
+    let along = Vec3::z() - contact.n_O * contact.n_O.z;
+    let [x, y] = tangents(&-contact.n_O).map(|t| t.dot(&along) / along.norm());
+    let edge = |a: f64, b: f64| ConeEdge { tangential: [x * a - y * b, y * a + x * b], torsion: 0.0 };
+    let corners = [edge(0.9 * mu, 0.0), edge(0.0, 0.5 * mu), edge(-0.9 * mu, 0.0), edge(0.0, -0.5 * mu)];
+    Cone::Polyhedral(corners.to_vec().into())
 }
 
 impl ContactModel for Liar {
-    fn cone(&self, _: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
-        let round = Cone::Elliptic { mu, gamma: 0.0 };
+    fn cone(&self, finger: FingerIndex, contact: &Contact, mu: f64) -> Cone<'_> {
+        let round: Cone<'static> = Cone::Elliptic { mu, gamma: 0.0 };
         match self.lie {
             Lie::NoEdges if mu == 0.0 => Cone::Polyhedral(Vec::new().into()),
             Lie::ShrinksAtHighFriction if mu > 1.0 => Cone::Elliptic { mu: 0.9, gamma: 0.0 },
@@ -68,6 +102,28 @@ impl ContactModel for Liar {
                     if first.unwrap_or_else(|first| first) == bits || first.is_ok() { 1.0 } else { 0.99 };
                 Cone::Elliptic { mu: part * mu, gamma: 0.0 }
             }
+            Lie::LosesTheGrainAtThePoles => grain_along_z(contact, mu),
+            Lie::KnowsThreeFingers if finger.0 > 2 => Cone::Polyhedral(Vec::new().into()),
+            Lie::IgnoresTheFriction => Cone::Elliptic { mu: 0.5, gamma: 0.0 },
+            Lie::SquaresTheFriction => Cone::Elliptic { mu: mu * mu, gamma: 0.0 },
+            // Edges that touch the round cone from outside, half a percent beyond it at the corners.
+            Lie::DrawsEdgesOutside => {
+                let corner = |k: usize| {
+                    let (sin, cos) = (std::f64::consts::PI * k as f64 / 16.0).sin_cos();
+                    ConeEdge { tangential: [1.005 * mu * cos, 1.005 * mu * sin], torsion: 0.0 }
+                };
+                Cone::Polyhedral((0..32).map(corner).collect())
+            }
+            Lie::ThinsTorsion => Cone::Elliptic { mu, gamma: 0.002 / mu.max(0.04) },
+            Lie::ThreeAreNeeded => Cone::Elliptic { mu, gamma: 0.004 },
+            Lie::TakesTheNormalInward if contact.n_O.z.abs() < 0.99 => {
+                grain_along_z(&Contact { n_O: -contact.n_O, ..*contact }, mu)
+            }
+            Lie::KeepsConesWhateverTheFriction => self.first(contact.p_OC.map(f64::to_bits).into(), round),
+            Lie::KeepsConesByPlace => {
+                let cell = [contact.p_OC.x, contact.p_OC.y, mu].map(|x| ((x + 1.0) * 1e3).round() as u64);
+                self.first(cell, Cone::Elliptic { mu: (0.9 + 0.1 * contact.n_O.x.powi(2)) * mu, gamma: 0.0 })
+            }
             Lie::Prints => {
                 println!("the friction is {mu}");
                 round
@@ -81,13 +137,13 @@ impl ContactModel for Liar {
             Lie::SpinsOnForEver => Cone::Elliptic { mu, gamma: 1e-3 },
             Lie::ForgetsToSpin => Cone::FRICTIONLESS,
             // Torsion is its one fault, and that only at rest.
-            Lie::Millimetres => Cone::Elliptic { mu, gamma: 0.0 },
+            Lie::Millimetres | Lie::ThinsTorsion | Lie::ThreeAreNeeded => Cone::Elliptic { mu, gamma: 0.0 },
             _ => self.cone(finger, contact, mu),
         }
     }
 
     fn fewest_contacts(&self) -> usize {
-        if matches!(self.lie, Lie::TwoAreEnough | Lie::Millimetres) { 2 } else { 3 }
+        if matches!(self.lie, Lie::TwoAreEnough | Lie::Millimetres | Lie::ThinsTorsion) { 2 } else { 3 }
     }
 }
 
@@ -131,6 +187,16 @@ fn each_liar_fails_its_check_and_no_other() {
         (liar!(Lie::RemembersTheFirst), "contact-model-pure"),
         (liar!(Lie::Counts), "contact-model-pure"),
         (liar!(Lie::OtherOnOtherThreads), "contact-model-pure"),
+        (liar!(Lie::LosesTheGrainAtThePoles), "cone-valid"),
+        (liar!(Lie::KnowsThreeFingers), "cone-valid"),
+        (liar!(Lie::IgnoresTheFriction), "cone-within-friction"),
+        (liar!(Lie::SquaresTheFriction), "cone-within-friction"),
+        (liar!(Lie::DrawsEdgesOutside), "cone-within-friction"),
+        (liar!(Lie::ThinsTorsion), "cone-monotone"),
+        (liar!(Lie::ThreeAreNeeded), "fewest-contacts"),
+        (liar!(Lie::TakesTheNormalInward), "tangent-frames"),
+        (liar!(Lie::KeepsConesWhateverTheFriction), "contact-model-pure"),
+        (liar!(Lie::KeepsConesByPlace), "contact-model-pure"),
     ];
     support::judge(Slot::ContactModel, &HONEST, &liars, &[]);
 }

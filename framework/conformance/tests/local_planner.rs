@@ -1,10 +1,12 @@
 //! For each law of local planners, in each of their slots, one liar that breaks it and no other.
 #![allow(missing_docs)]
 
+#[path = "support/blind.rs"]
+mod blind;
 mod support;
 
+use blind::{AnyGrasp, FewBodies, LonelyFingers, wide};
 use regrasp_api::*;
-use regrasp_conformance::fixtures::{four_finger, free_fingertips, three_finger};
 use regrasp_conformance::reference::{EdgeClosure, FineRolling, GraspLine, LiftOver};
 use regrasp_world::ChainHand;
 
@@ -31,6 +33,14 @@ enum Lie {
     SlidesAlong,
     MovesTheObject,
     StraightThrough,
+    TwiceTheStep,
+    CountsItsWayBackwards,
+    GoesOnWithTheOldPath,
+    RefusesLongWays,
+    RefusesUnevenObjects,
+    SeesNoOtherFingers,
+    EndsWithOldContacts,
+    LiftsTooLow,
 }
 
 /// The honest planner for a target.
@@ -49,84 +59,23 @@ struct Liar {
     wide: Option<ChainHand>,
 }
 
-/// The kit's hand with joints that move farther.
-fn wide(hand: &dyn Hand) -> ChainHand {
-    let prismatic = hand.finger(FingerIndex(0)).joints[0].kind == JointKind::Prismatic;
-    let mut description = match hand.finger_count() {
-        _ if prismatic => free_fingertips(),
-        3 => three_finger(),
-        _ => four_finger(),
+/// How far a target is (m; rad counted as 3 cm).
+fn way(from: &Configuration, to: &Target<'_>) -> f64 {
+    let X_HO = match to {
+        Target::Grasp(q) => &q.X_HO,
+        Target::Transfer(X_HO) => X_HO,
+        Target::Regrasp { .. } => return 0.0,
     };
-    description.fingertip = hand.fingertip();
-    for joint in description.finger.iter_mut().flat_map(|finger| &mut finger.joint) {
-        (joint.lower, joint.upper) = (joint.lower - 0.05, joint.upper + 0.05);
-    }
-    ChainHand::new(description).unwrap()
+    let turn = angle_between(&from.X_HO.rotation, &X_HO.rotation);
+    (X_HO.translation.vector - from.X_HO.translation.vector).norm() + 0.03 * turn
 }
 
-/// Sees nothing but what touches the object in a regrasp, and nothing at all otherwise.
-struct FewBodies<'a> {
-    true_one: &'a dyn Clearance,
-    object_counts: bool,
-}
-
-impl FewBodies<'_> {
-    fn judge(&self, found: Result<(), BodyPair>) -> Result<(), BodyPair> {
-        found.or_else(|pair| {
-            let object = pair.0 == Body::Object || pair.1 == Body::Object;
-            if object && self.object_counts { Err(pair) } else { Ok(()) }
-        })
-    }
-}
-
-impl Clearance for FewBodies<'_> {
-    fn object_free(&self, X_HO: &Pose) -> Result<(), BodyPair> {
-        self.judge(self.true_one.object_free(X_HO))
-    }
-    fn finger_free(
-        &self,
-        finger: FingerIndex,
-        joints: &FingerJoints,
-        X_HO: &Pose,
-        tip: TipRule,
-    ) -> Result<(), BodyPair> {
-        self.judge(self.true_one.finger_free(finger, joints, X_HO, tip))
-    }
-    fn fingers_free(
-        &self,
-        a: (FingerIndex, &FingerJoints),
-        b: (FingerIndex, &FingerJoints),
-    ) -> Result<(), BodyPair> {
-        self.judge(self.true_one.fingers_free(a, b))
-    }
-    fn configuration_free(
-        &self,
-        q: &Configuration,
-        moved: FingerSet,
-        object_moved: bool,
-    ) -> Result<(), BodyPair> {
-        self.judge(self.true_one.configuration_free(q, moved, object_moved))
-    }
-    fn distances(&self, _: &Configuration, _: f64) -> Vec<PairDistance> {
-        Vec::new()
-    }
-}
-
-struct AnyGrasp;
-
-impl StabilityTest for AnyGrasp {
-    fn test(&self, _: &Grasp<'_>, _: &mut Hint, _: &mut Context<'_>) -> Result<Stability, CallError> {
-        Ok(Stability::Stable)
-    }
-    fn assess(
-        &self,
-        grasp: &Grasp<'_>,
-        length: Option<f64>,
-        center_O: Option<Vec3>,
-        context: &mut Context<'_>,
-    ) -> Result<Assessment, CallError> {
-        EdgeClosure.assess(grasp, length, center_O, context)
-    }
+/// Whether all fingertips slide in boxes and the object does not turn: then long steps leave no contact.
+fn is_straight(task: &Task<'_>, path: &Path) -> bool {
+    let slides = task.hand.finger(FingerIndex(0)).joints[0].kind == JointKind::Prismatic;
+    let (first, last) = (&path.states[0].X_HO, &path.states[path.states.len() - 1].X_HO);
+    let moved = (last.translation.vector - first.translation.vector).norm() > 1e-3;
+    slides && moved && path.states.iter().all(|q| q.X_HO.rotation == first.rotation)
 }
 
 /// The object moves, contact points and normals stay: fingertips slip.
@@ -140,10 +89,12 @@ fn slide_along(
     context.count_call(Slot::TransferPlanner);
     path.restart(from);
     let mut q = from.clone();
-    for step in 1..=20 {
+    let count = 20 + (2e3 * way(from, &Target::Transfer(to))) as u32;
+    for step in 1..=count {
         context.proceed()?;
-        let before = (q.clone(), f64::from(step - 1) / 20.0);
-        q.X_HO = if step == 20 { *to } else { interpolate(&from.X_HO, to, f64::from(step) / 20.0) };
+        let part = |step: u32| f64::from(step) / f64::from(count);
+        let before = (q.clone(), part(step - 1));
+        q.X_HO = if step == count { *to } else { interpolate(&from.X_HO, to, part(step)) };
         let mut closed = true;
         for finger in from.holding().iter() {
             let center = q.contact_tip_center(finger, task.hand.fingertip_radius()).unwrap();
@@ -189,6 +140,22 @@ impl Liar {
                 context.reject(self.slot, Reason::Budget);
                 Ok(refused())
             }
+            (Lie::RefusesLongWays, _) if self.fits(to) && way(from, to) > 6e-3 => {
+                path.restart(from);
+                context.count_call(self.slot);
+                context.proceed()?;
+                context.reject(self.slot, Reason::Budget);
+                Ok(refused())
+            }
+            (Lie::RefusesUnevenObjects, _)
+                if self.fits(to) && !matches!(task.object.primitive, Some(Primitive::Sphere { .. })) =>
+            {
+                path.restart(from);
+                context.count_call(self.slot);
+                context.proceed()?;
+                context.reject(self.slot, Reason::Budget);
+                Ok(refused())
+            }
             (Lie::TakesAnyTarget, _) if !self.fits(to) => {
                 path.restart(from);
                 Ok(refused())
@@ -229,6 +196,23 @@ impl Liar {
         let finger = path.states[0].joints.fingers().find(moves);
         match self.lie {
             Lie::ForgetsTheStart if last > 1 => drop(path.states.remove(0)),
+            // Counted from the wrong end, or half a way where none was made.
+            Lie::CountsItsWayBackwards if !whole => {
+                reached.fraction = if reached.fraction == 0.0 { 0.5 } else { 1.0 - reached.fraction };
+            }
+            Lie::TwiceTheStep if last > 40 && self.slot == Slot::RegraspPlanner => {
+                let kept = (0..=last).filter(|i| *i < 20 || *i + 20 > last || i % 20 == 0);
+                path.states = kept.map(|i| path.states[i].clone()).collect();
+            }
+            Lie::TwiceTheStep if last > 12 && is_straight(task, path) => {
+                let kept = (0..=last).filter(|i| i % 8 == 0 || *i == last);
+                path.states = kept.map(|i| path.states[i].clone()).collect();
+            }
+            // The states are right, the end keeps the contacts of the beginning.
+            Lie::EndsWithOldContacts if last > 2 && self.slot == Slot::TransferPlanner => {
+                reached.end.contacts = path.states[0].contacts;
+                path.states[last] = reached.end.clone();
+            }
             Lie::HalfIsWhole if whole => reached.fraction = 0.5,
             Lie::AlmostThere if whole => {
                 let (pose, first) =
@@ -247,7 +231,9 @@ impl Liar {
                 }
             }
             Lie::LongSteps if last > 4 => {
-                let every = if self.slot == Slot::TransferPlanner { 5 } else { 20 };
+                // No longer than the resolution allows where the object moves.
+                let rests = path.states[0].X_HO == path.states[last].X_HO;
+                let every = if rests { 20 } else { 4 };
                 let kept = (0..=last).filter(|i| i % every == 0 || *i == last);
                 path.states = kept.map(|i| path.states[i].clone()).collect();
             }
@@ -266,7 +252,15 @@ impl Liar {
                 let end = path.states.len().saturating_sub(1).max(1);
                 path.states[1..end].iter_mut().for_each(|q| q.X_HO.translation.vector.y += 1e-12);
             }
-            Lie::StraightThrough if last > 8 => drop(path.states.drain(3..last - 2)),
+            Lie::StraightThrough if last > 8 => {
+                let (a, b) = (path.states[2].joints, path.states[last - 2].joints);
+                for i in 3..last - 2 {
+                    let s = (i - 2) as f64 / (last - 4) as f64;
+                    for (finger, joints) in a.iter() {
+                        path.states[i].joints[finger] = joints.interpolate(&b[finger], s);
+                    }
+                }
+            }
             _ => {}
         }
     }
@@ -284,9 +278,13 @@ impl LocalPlanner for Liar {
         let mut other = *task;
         let object_counts = self.slot == Slot::RegraspPlanner;
         let few = FewBodies { true_one: task.clearance, object_counts };
+        let lonely = LonelyFingers(task.clearance);
+        let low = Resolution { lift: 9e-4, clearance: 2e-4, ..*task.resolution };
         match self.lie {
             Lie::WiderLimits => other.hand = self.wide.as_ref().unwrap(),
             Lie::SeesFewBodies => other.clearance = &few,
+            Lie::SeesNoOtherFingers => other.clearance = &lonely,
+            Lie::LiftsTooLow => other.resolution = &low,
             Lie::TrustsEveryGrasp => other.stability = &AnyGrasp,
             _ => {}
         }
@@ -302,8 +300,10 @@ impl LocalPlanner for Liar {
         let mut own = Path::default();
         let mut reached = self.answer(&other, from, to, &mut own, context)?;
         self.spoil(task, &mut own, &mut reached, context);
-        if let Some(path) = path {
-            *path = own;
+        match path {
+            Some(path) if self.lie == Lie::GoesOnWithTheOldPath => path.states.append(&mut own.states),
+            Some(path) => *path = own,
+            None => {}
         }
         Ok(reached)
     }
@@ -334,6 +334,10 @@ macro_rules! judge_slot {
         let liars = [
             (liar!($slot, Lie::ForgetsTheStart), concat!($prefix, "-ends")),
             (liar!($slot, Lie::HalfIsWhole), concat!($prefix, "-reached")),
+            (liar!($slot, Lie::GoesOnWithTheOldPath), concat!($prefix, "-ends")),
+            (liar!($slot, Lie::CountsItsWayBackwards), concat!($prefix, "-fraction")),
+            (liar!($slot, Lie::TwiceTheStep), concat!($prefix, "-steps")),
+            (liar!($slot, Lie::RefusesUnevenObjects), concat!($prefix, "-succeeds")),
             (liar!($slot, Lie::AlmostThere), concat!($prefix, "-target")),
             (liar!($slot, Lie::NoPathNoMotion), concat!($prefix, "-path-optional")),
             (liar!($slot, Lie::AlwaysRefuses), concat!($prefix, "-succeeds")),
@@ -358,6 +362,8 @@ fn each_liar_of_the_grasp_slot_fails_its_check_and_no_other() {
         SLOT,
         "grasp",
         (liar!(SLOT, Lie::StoresOldContacts), "grasp-contacts"),
+        (liar!(SLOT, Lie::RefusesLongWays), "grasp-succeeds"),
+        (liar!(SLOT, Lie::SeesNoOtherFingers), "grasp-collision-free"),
         (liar!(SLOT, Lie::LongSteps), "grasp-closed"),
         (liar!(SLOT, Lie::LetsGo), "grasp-same-fingers"),
     );
@@ -370,6 +376,8 @@ fn each_liar_of_the_transfer_slot_fails_its_check_and_no_other() {
         SLOT,
         "transfer",
         (liar!(SLOT, Lie::StoresOldContacts), "transfer-contacts"),
+        (liar!(SLOT, Lie::EndsWithOldContacts), "transfer-contacts"),
+        (liar!(SLOT, Lie::RefusesLongWays), "transfer-succeeds"),
         (liar!(SLOT, Lie::LongSteps), "transfer-closed"),
         (liar!(SLOT, Lie::LetsGo), "transfer-same-fingers"),
         (liar!(SLOT, Lie::SlidesAlong), "transfer-no-slip"),
@@ -383,6 +391,8 @@ fn each_liar_of_the_regrasp_slot_fails_its_check_and_no_other() {
         SLOT,
         "regrasp",
         (liar!(SLOT, Lie::MovesTheObject), "regrasp-others-rest"),
+        (liar!(SLOT, Lie::SeesNoOtherFingers), "regrasp-collision-free"),
+        (liar!(SLOT, Lie::LiftsTooLow), "regrasp-touches-at-ends"),
         (liar!(SLOT, Lie::StraightThrough), "regrasp-touches-at-ends"),
     );
 }

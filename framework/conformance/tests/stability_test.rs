@@ -11,6 +11,7 @@ use regrasp_conformance::reference::EdgeClosure;
 enum Lie {
     Nothing,
     MoreFriction,
+    MissesTheGrain,
     AlwaysNo,
     FarFromTheFramesOrigin,
     FirstFingerFirst,
@@ -65,6 +66,19 @@ fn with_more_friction<'a>(grasp: &Grasp<'a>) -> Grasp<'a> {
     other
 }
 
+/// The grasp with the larger coefficient of a grain all round.
+fn without_grain<'a>(grasp: &Grasp<'a>) -> Grasp<'a> {
+    let mut other = Grasp::new(grasp.g_O);
+    for contact in grasp.contacts() {
+        let mut contact = contact.clone();
+        if let Cone::Grained(grain) = &contact.cone {
+            contact.cone = Cone::Elliptic { mu: grain.mu[0].max(grain.mu[1]), gamma: grain.gamma };
+        }
+        other.push(contact);
+    }
+    other
+}
+
 impl StabilityTest for Liar {
     fn test(
         &self,
@@ -87,6 +101,7 @@ impl StabilityTest for Liar {
             return Ok(Stability::Unstable);
         }
         match self.lie {
+            Lie::MissesTheGrain => EdgeClosure.test(&without_grain(grasp), hint, context),
             Lie::MoreFriction => EdgeClosure.test(&with_more_friction(grasp), hint, context),
             _ => EdgeClosure.test(grasp, hint, context),
         }
@@ -166,6 +181,7 @@ macro_rules! liar {
 fn each_liar_fails_its_check_and_no_other() {
     let liars = [
         (liar!(Lie::MoreFriction), "no-false-stable"),
+        (liar!(Lie::MissesTheGrain), "no-false-stable"),
         (liar!(Lie::AlwaysNo), "accepts-good-grasps"),
         (liar!(Lie::FarFromTheFramesOrigin), "rigid-motion"),
         (liar!(Lie::FirstFingerFirst), "permutation"),

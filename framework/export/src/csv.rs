@@ -1,6 +1,6 @@
 //! A table with one row a state, as comma-separated values (RFC 4180).
 
-use crate::table::Row;
+use crate::table::{Row, object_head};
 use crate::{File, Scene};
 
 /// One file: columns in the order of [`head`]; a cell is empty where there is nothing to say, such as the
@@ -17,8 +17,7 @@ fn head(scene: &Scene<'_>) -> Vec<String> {
     let mut head: Vec<String> = ["time", "segment", "kind", "moving_finger"].map(String::from).into();
     head.extend(scene.names.joints.iter().flatten().map(|joint| format!("joint.{joint}")));
     head.extend(scene.names.joints.iter().flatten().map(|joint| format!("velocity.{joint}")));
-    head.extend(vector("object.position", &["x", "y", "z"]));
-    head.extend(vector("object.orientation", &["w", "x", "y", "z"]));
+    head.extend(object_head());
     for finger in &scene.description().finger {
         let name = &finger.name;
         head.extend(vector(&format!("{name}.tip_H"), &["x", "y", "z"]));

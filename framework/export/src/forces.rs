@@ -38,7 +38,7 @@ impl Forces {
         let stage = |segment| stage(segment, grip.is_none());
         let stages: Vec<Stage<'_>> = motion.segments.iter().map(stage).collect();
         let g_H = Vec3::from(plan.scenario.problem.gravity);
-        let friction = Friction { mu: cone.mu, gamma: cone.gamma };
+        let friction = Friction::of(&cone.cone()).unwrap_or(Friction::point(cone.mu));
         let held = grasp_forces((hand, object, g_H), friction, &stages, &settings)?;
         Ok(Self { held: held.into_iter().flatten().collect(), missing: None, settings })
     }

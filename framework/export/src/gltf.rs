@@ -2,7 +2,8 @@
 //!
 //! The node `hand` has the plan's frame H, z upwards; the node `world` above it turns z to glTF's y. Each
 //! joint is a node that turns or slides inside a fixed node that places it, so that linear interpolation of
-//! its keys is the plan's motion. Numbers are 32-bit: at a hand's size 1e-8 m.
+//! its keys is the plan's motion. Nodes and meshes are called after what they are: the palm, links,
+//! fingertips, the object, obstacles. Numbers are 32-bit: at a hand's size 1e-8 m.
 //!
 //! The Khronos Group, "glTF 2.0 specification", 2021.
 
@@ -20,12 +21,12 @@ use std::f64::consts::FRAC_1_SQRT_2;
 pub(crate) fn files(scene: &Scene<'_>, stem: &str) -> Vec<File> {
     let mut document = Document::default();
     let mut children = Vec::new();
-    children.extend(document.pieces(&scene.solids.palm, PALM));
+    children.extend(document.pieces("palm", &scene.solids.palm, PALM));
     for finger in 0..scene.origins.len() {
         children.push(document.finger(scene, finger));
     }
     for (name, piece) in scene.names.obstacles.iter().zip(&scene.solids.obstacles) {
-        let mesh = document.mesh(&piece.mesh, |_| OBSTACLE);
+        let mesh = document.mesh(name, &piece.mesh, |_| OBSTACLE);
         children.push(document.node(name, &piece.X_BMesh(), &[], Some(mesh)));
     }
     let object = document.object(scene);
@@ -77,23 +78,26 @@ impl Document {
         self.nodes.len() - 1
     }
 
-    fn pieces(&mut self, pieces: &[Piece], colour: Colour) -> Vec<usize> {
-        let one = |piece: &Piece| {
-            let mesh = self.mesh(&piece.mesh, |_| colour);
-            self.node("shape", &piece.X_BMesh(), &[], Some(mesh))
+    /// The shapes of one part, called after it, with a number behind where there are several.
+    fn pieces(&mut self, part: &str, pieces: &[Piece], colour: Colour) -> Vec<usize> {
+        let one = |(k, piece): (usize, &Piece)| {
+            let name = if pieces.len() == 1 { part.to_owned() } else { format!("{part}-{}", k + 1) };
+            let mesh = self.mesh(&name, &piece.mesh, |_| colour);
+            self.node(&name, &piece.X_BMesh(), &[], Some(mesh))
         };
-        pieces.iter().map(one).collect()
+        pieces.iter().enumerate().map(one).collect()
     }
 
     /// The chain of a finger, from its tip back to its first joint; gives the node that hangs on the hand.
     fn finger(&mut self, scene: &Scene<'_>, finger: usize) -> usize {
         let description = &scene.description().finger[finger];
-        let ball = self.mesh(&scene.solids.tip.mesh, |_| TIP);
+        let ball = self.mesh(&scene.names.tips[finger], &scene.solids.tip.mesh, |_| TIP);
         let [x, y, z] = description.tip;
         let mut below = self.node(&scene.names.tips[finger], &Pose::translation(x, y, z), &[], Some(ball));
         let mut moving = Vec::new();
         for joint in (0..description.joint.len()).rev() {
-            let mut children = self.pieces(&scene.solids.links[finger][joint], LINK);
+            let link = &scene.names.links[finger][joint];
+            let mut children = self.pieces(link, &scene.solids.links[finger][joint], LINK);
             children.push(below);
             let node = self.node(&scene.names.joints[finger][joint], &Pose::identity(), &children, None);
             moving.push(node);
@@ -110,12 +114,12 @@ impl Document {
             let behind = middle.iter().filter(|x| **x < 0.0).count();
             OBJECT_TONES[behind % 2]
         };
-        let mesh = self.mesh(&scene.object.mesh, tone);
+        let mesh = self.mesh(OBJECT, &scene.object.mesh, tone);
         self.node(OBJECT, &scene.keys()[0].1.X_HO, &[], Some(mesh))
     }
 
     /// A mesh with flat facets, each in the colour that its middle gets.
-    fn mesh(&mut self, mesh: &Mesh, colour: impl Fn(Vec3) -> Colour) -> usize {
+    fn mesh(&mut self, name: &str, mesh: &Mesh, colour: impl Fn(Vec3) -> Colour) -> usize {
         let facets = 0..mesh.facets().len() as u32;
         let corners = facets.clone().flat_map(|facet| mesh.corners(facet));
         let normals = facets.clone().flat_map(|facet| [mesh.normal(facet); 3]);
@@ -125,7 +129,8 @@ impl Document {
             "NORMAL": self.buffer.vectors(normals, false),
             "COLOR_0": self.buffer.colours(colours),
         });
-        self.meshes.push(json!({ "primitives": [{ "attributes": attributes, "material": 0 }] }));
+        self.meshes
+            .push(json!({ "name": name, "primitives": [{ "attributes": attributes, "material": 0 }] }));
         self.meshes.len() - 1
     }
 

@@ -88,3 +88,8 @@ impl Row<'_> {
         (self.q.X_HO.translation.vector.into(), [q.w, q.i, q.j, q.k])
     }
 }
+
+/// The columns of the object's pose, the same in every table.
+pub(crate) fn object_head() -> [String; 7] {
+    ["x", "y", "z", "qw", "qx", "qy", "qz"].map(|name| format!("object.{name}"))
+}

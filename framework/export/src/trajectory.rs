@@ -1,7 +1,7 @@
 //! The joints over time as a table, beside models of the hand.
 
 use crate::csv::Table;
-use crate::table::Row;
+use crate::table::{Row, object_head};
 use crate::{File, Scene};
 use regrasp_api::{FingerIndex, JointKind};
 
@@ -40,8 +40,8 @@ pub(crate) fn controls(scene: &Scene<'_>, name: String) -> File {
 }
 
 fn motion_head(scene: &Scene<'_>) -> Vec<String> {
-    let object = ["x", "y", "z", "qw", "qx", "qy", "qz"].map(|name| format!("object.{name}"));
-    scene.names.joints.iter().flatten().cloned().chain(object).collect()
+    let joints = scene.names.joints.iter().flatten().map(|joint| format!("joint.{joint}"));
+    joints.chain(object_head()).collect()
 }
 
 fn motion_cells(row: &Row<'_>) -> Vec<String> {

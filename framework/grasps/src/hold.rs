@@ -22,12 +22,12 @@ pub(crate) struct Holding {
 impl Holding {
     /// As the plan file of the grasps claims.
     pub fn new(plan: &Plan) -> Self {
-        let cone = plan.claims.contact.cone.filter(|cone| cone.mu > 1e-6 && cone.mu <= 10.0);
+        let cone = plan.claims.contact.cone.filter(|cone| cone.most() > 1e-6 && cone.most() <= 10.0);
         let mut settings = SimulationSettings::default();
         if let Criterion::Holding(load) = &plan.claims.criterion {
             (settings.grip, settings.relied) = (load.max_normal_force, load.friction_factor);
         }
-        Self { friction: cone.map(|cone| Friction::point(cone.mu)), settings }
+        Self { friction: cone.and_then(|cone| Friction::of(&cone.cone().without_torsion())), settings }
     }
 
     /// Forces that hold the object's weight within what may be relied on, if there are any.

@@ -48,7 +48,8 @@ impl What {
                 "its <limit> lacks `velocity`; write it, or give `velocity` for all joints that lack it"
             }
             Self::Effort => {
-                "its <limit> lacks `effort`; write it, or give `effort` for all joints that lack it"
+                "its <limit> lacks `effort` (in an MJCF: its actuator lacks `forcerange`); write it, or give \
+                 `effort` for all joints that lack it"
             }
             Self::NoVelocity => {
                 "`velocity` = 0 must be positive, or the joint could not move; correct it, or give \

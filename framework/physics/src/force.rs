@@ -2,7 +2,7 @@
 
 use crate::PhysicsError;
 use crate::settings::check;
-use regrasp_api::Vec3;
+use regrasp_api::{Cone, Grain, Vec3, any_orthogonal};
 
 /// Friction of all contacts: |f_t|²/μ² + m²/γ² ≤ f_n², with f_n, f_t the normal and tangential force (N) and
 /// m the torque about the normal (N·m).
@@ -12,23 +12,99 @@ pub struct Friction {
     pub mu: f64,
     /// Torsional friction radius γ (m); 0 for contacts that carry no torque about their normal.
     pub gamma: f64,
+    /// A grain: along it μ counts, across it the coefficient that it names; `None` where friction is the same
+    /// all round.
+    pub grain: Option<Across>,
+}
+
+/// Friction across a grain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Across {
+    /// Coefficient of friction across the grain, no unit, 0 to 10.
+    pub mu: f64,
+    /// Where the grain runs, in O: see [`regrasp_api::Grain`].
+    pub axis_O: Vec3,
 }
 
 impl Friction {
     /// Of contacts that carry no torque about their normal.
     pub fn point(mu: f64) -> Self {
-        Self { mu, gamma: 0.0 }
+        Self::round(mu, 0.0)
+    }
+
+    /// The same all round.
+    pub fn round(mu: f64, gamma: f64) -> Self {
+        Self { mu, gamma, grain: None }
+    }
+
+    /// Of contacts with this cone; `None` where it is a polyhedron.
+    pub fn of(cone: &Cone<'_>) -> Option<Self> {
+        match cone {
+            Cone::Elliptic { mu, gamma } => Some(Self::round(*mu, *gamma)),
+            Cone::Grained(grain) => {
+                let ([mu, across], axis_O) = (grain.mu, grain.axis_O);
+                Some(Self { mu, gamma: grain.gamma, grain: Some(Across { mu: across, axis_O }) })
+            }
+            Cone::Polyhedral(_) => None,
+        }
+    }
+
+    /// A part of the friction, and one of the torsional friction.
+    pub(crate) fn scaled(self, part: f64, torsion_part: f64) -> Self {
+        let grain = self.grain.map(|grain| Across { mu: grain.mu * part, ..grain });
+        Self { mu: self.mu * part, gamma: self.gamma * torsion_part, grain }
+    }
+
+    /// Without torques about the normal.
+    pub(crate) fn without_torsion(self) -> Self {
+        Self { gamma: 0.0, ..self }
+    }
+
+    /// The tangential directions at the outward normal `n_O`, unit vectors in O, with their coefficients.
+    pub(crate) fn tangents(&self, n_O: &Vec3) -> [(Vec3, f64); 2] {
+        match self.grain {
+            Some(Across { mu, axis_O }) => Grain { mu: [self.mu, mu], gamma: self.gamma, axis_O }.at(n_O),
+            None => {
+                let tangent = any_orthogonal(n_O);
+                [(tangent, self.mu), (n_O.cross(&tangent), self.mu)]
+            }
+        }
     }
 
     /// Refuses the first value outside its range: μ in 1e-6 to 10, γ in 0 to 1 m.
     pub fn validate(&self) -> Result<(), PhysicsError> {
-        check("friction", self.mu, 1e-6, 10.0)?;
+        check("friction", self.most(), 1e-6, 10.0)?;
+        check("friction", self.mu, 0.0, 10.0)?;
+        if let Some(grain) = self.grain {
+            check("friction", grain.mu, 0.0, 10.0)?;
+        }
         check("gamma", self.gamma, 0.0, 1.0)
     }
 
     /// How long (m) the lever is with which a tangential force compares with a torque about the normal: γ/μ.
     pub(crate) fn lever(&self) -> f64 {
-        self.gamma / self.mu
+        self.gamma / self.most()
+    }
+
+    /// The largest coefficient.
+    pub(crate) fn most(&self) -> f64 {
+        self.grain.map_or(self.mu, |grain| self.mu.max(grain.mu))
+    }
+
+    /// The length of a tangential force, its parts along and across a grain counted by how much harder they
+    /// are to bear than where friction is largest; for the outward normal `n`.
+    fn weighed(&self, n: &Vec3, tangential: &Vec3) -> f64 {
+        if self.grain.is_none() {
+            return tangential.norm();
+        }
+        let [(a, along), (b, across)] = self.tangents(n);
+        let part = |t: &Vec3, mu: f64| {
+            let f = tangential.dot(t);
+            if mu > 0.0 { f * self.most() / mu } else { f * f64::INFINITY }
+        };
+        // No force at all needs no friction, where there is none either.
+        let finite = |x: f64| if x.is_nan() { 0.0 } else { x };
+        finite(part(&a, along)).hypot(finite(part(&b, across)))
     }
 
     /// Whether contacts carry torques about their normals.
@@ -40,15 +116,20 @@ impl Friction {
     /// f_n); infinite where it does not press.
     pub(crate) fn share(&self, n: &Vec3, force: &Vec3) -> f64 {
         let normal = -n.dot(force);
-        if normal > 0.0 { (force + n * normal).norm() / (self.mu * normal) } else { f64::INFINITY }
+        if normal > 0.0 {
+            self.weighed(n, &(force + n * normal)) / (self.most() * normal)
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// The distance of a force from the cone's boundary (N), positive inside, for the outward normal `n`: μ
-    /// f_n - √(|f_t|² + (μ m/γ)²).
+    /// f_n - √(|f_t|² + (μ m/γ)²). With a grain μ is the larger coefficient, and the part of f_t that meets
+    /// the smaller one counts as much more. `n` and the force in O, then.
     pub fn margin(&self, n: &Vec3, exerted: &ContactForce) -> f64 {
         let normal = -n.dot(&exerted.force);
         let spin = if self.has_torsion() { exerted.spin / self.lever() } else { 0.0 };
-        self.mu * normal - (exerted.force + n * normal).norm().hypot(spin)
+        self.most() * normal - self.weighed(n, &(exerted.force + n * normal)).hypot(spin)
     }
 }
 
@@ -74,7 +155,7 @@ mod tests {
 
     #[test]
     fn a_force_on_its_cone_has_no_margin() {
-        let friction = Friction { mu: 0.5, gamma: 0.004 };
+        let friction = Friction::round(0.5, 0.004);
         let n = Vec3::z();
         let press = Vec3::new(0.0, 0.0, -2.0);
         // All of the friction as force, all as torque, and some of both.
@@ -84,6 +165,12 @@ mod tests {
             assert!(friction.margin(&n, &exerted).abs() < 1e-12, "{exerted:?}");
         }
         assert_eq!(friction.margin(&n, &ContactForce::pure(press)), 1.0);
+        let grain = Some(Across { mu: 0.25, axis_O: Vec3::x() });
+        let grained = Friction { grain, ..friction };
+        for (tangential, share) in [(Vec3::x(), 1.0), (Vec3::y() * 0.5, 1.0), (Vec3::y(), 2.0)] {
+            let found = grained.share(&n, &(press + tangential));
+            assert!((found - share).abs() < 1e-12, "{found} for {share}");
+        }
         assert_eq!(Friction::point(0.5).margin(&n, &ContactForce::pure(-press)), -1.0);
     }
 }

@@ -178,8 +178,7 @@ impl<'a> Holder<'a> {
             let taken = efforts.iter().zip(limits).map(|(effort, limit)| effort.abs() / limit);
             held.effort_share = taken.fold(held.effort_share, f64::max);
             if let Some(contact) = q.contacts[finger] {
-                let n_H = q.X_HO.rotation * contact.n_O;
-                held.margin = held.margin.min(self.friction.margin(&n_H, &exerted));
+                held.margin = held.margin.min(self.friction.margin(&contact.n_O, &in_O));
             }
             held.forces[finger] = Some(exerted);
             held.efforts[finger] = efforts;

@@ -46,7 +46,7 @@ mod surface;
 mod transfer;
 
 pub use error::PhysicsError;
-pub use force::{ContactForce, Friction};
+pub use force::{Across, ContactForce, Friction};
 pub use grasp_forces::{grasp_forces, grasp_forces_at};
 pub use hold::Held;
 pub use holding::{

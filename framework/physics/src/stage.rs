@@ -27,6 +27,6 @@ impl Stage<'_> {
     /// The friction that forces may rely on: contacts may spin in a transfer and then carry no torque about
     /// their normals.
     pub fn friction(&self, friction: Friction) -> Friction {
-        if self.moving.is_some() { friction } else { Friction::point(friction.mu) }
+        if self.moving.is_some() { friction } else { friction.without_torsion() }
     }
 }

@@ -7,7 +7,7 @@ use regrasp_api::*;
 use regrasp_physics::*;
 use support::{G, hand, object, ring, shapes};
 
-const FRICTION: Friction = Friction { mu: 0.7, gamma: 0.004 };
+const FRICTION: Friction = Friction { mu: 0.7, gamma: 0.004, grain: None };
 
 /// One state of a transfer and of a regrasp of finger 1, with the forces in each.
 fn held(object: &ObjectModel, friction: Friction) -> (Configuration, [Held; 2]) {
@@ -86,7 +86,7 @@ fn what_a_finger_does_not_hold_it_does_not_press() {
 fn friction_outside_its_range_is_refused() {
     let (hand, object) = (hand(), object("{ kind = \"sphere\", radius = 0.03 }"));
     let forces = |mu, gamma| {
-        grasp_forces((&hand, &object, G), Friction { mu, gamma }, &[], &SimulationSettings::default())
+        grasp_forces((&hand, &object, G), Friction::round(mu, gamma), &[], &SimulationSettings::default())
     };
     assert_eq!(forces(0.5, 0.0), Ok(vec![]));
     for (mu, gamma) in [(0.0, 0.0), (-1.0, 0.0), (f64::NAN, 0.0), (0.5, -1e-3), (0.5, f64::INFINITY)] {

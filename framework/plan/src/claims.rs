@@ -1,6 +1,6 @@
 //! What a plan claims of its contacts and grasps: the verifier holds it to that.
 
-use regrasp_api::{Cone, ConeEdge, Fingertip, ObjectModel};
+use regrasp_api::{Cone, ConeEdge, Fingertip, Grain, ObjectModel};
 pub use regrasp_api::{Criterion, Load};
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +37,7 @@ pub struct ContactClaim {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ConeRecord {
-    /// |f_t|²/μ² + m²/γ² ≤ f_n².
+    /// |f_t|²/μ² + m²/γ² ≤ f_n², or the same with a grain.
     Elliptic(ConeClaim),
     /// The cone that these edges span.
     Polyhedral(Vec<EdgeRecord>),
@@ -59,29 +59,97 @@ impl ConeRecord {
     pub fn of(cone: &Cone<'_>) -> Self {
         let edge = |edge: &ConeEdge| EdgeRecord { tangential: edge.tangential, torsion: edge.torsion };
         match cone {
-            Cone::Elliptic { mu, gamma } => Self::Elliptic(ConeClaim { mu: *mu, gamma: *gamma }),
             Cone::Polyhedral(edges) => Self::Polyhedral(edges.iter().map(edge).collect()),
+            Cone::Elliptic { mu, gamma } => Self::Elliptic(ConeClaim::round(*mu, *gamma)),
+            Cone::Grained(grain) => Self::Elliptic(ConeClaim::of_grain(grain)),
         }
     }
 }
 
-/// An elliptic cone: |f_t|²/μ² + m²/γ² ≤ f_n².
+/// An elliptic cone: |f_t|²/μ² + m²/γ² ≤ f_n²; with a grain f_a²/μ_a² + f_b²/μ_b² + m²/γ² ≤ f_n², f_a along
+/// it and f_b across.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ConeClaim {
-    /// Coefficient of friction that the plan relies on, no unit; at most the object's.
+    /// Coefficient of friction that the plan relies on, no unit; at most the object's. With a grain the one
+    /// along it.
     pub mu: f64,
     /// Torsional friction radius (m); counted as 0 in transfers, in which contacts may spin.
     pub gamma: f64,
+    /// The grain of contacts whose friction differs along and across it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub grain: Option<GrainClaim>,
+}
+
+/// A grain, as recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GrainClaim {
+    /// Coefficient of friction across the grain, no unit; at most the object's.
+    pub mu_across: f64,
+    /// Where it runs: a vector in the object's frame of any length, of which the part in a contact's tangent
+    /// plane counts. Where it stands on a contact the smaller coefficient counts all round.
+    pub axis_O: [f64; 3],
 }
 
 impl ConeClaim {
+    /// The same friction all round.
+    pub fn round(mu: f64, gamma: f64) -> Self {
+        Self { mu, gamma, grain: None }
+    }
+
+    fn of_grain(grain: &Grain) -> Self {
+        let [mu, mu_across] = grain.mu;
+        let axis_O = grain.axis_O.into();
+        Self { mu, gamma: grain.gamma, grain: Some(GrainClaim { mu_across, axis_O }) }
+    }
+
     /// The claim for contacts with this cone; `None` where it is not elliptic.
     pub fn from_cone(cone: &Cone<'_>) -> Option<Self> {
         match cone {
-            Cone::Elliptic { mu, gamma } => Some(Self { mu: *mu, gamma: *gamma }),
+            Cone::Elliptic { mu, gamma } => Some(Self::round(*mu, *gamma)),
+            Cone::Grained(grain) => Some(Self::of_grain(grain)),
             Cone::Polyhedral(_) => None,
         }
+    }
+
+    /// The cone that is claimed.
+    pub fn cone(&self) -> Cone<'static> {
+        match self.grain() {
+            Some(grain) => Cone::Grained(Box::new(grain)),
+            None => Cone::Elliptic { mu: self.mu, gamma: self.gamma },
+        }
+    }
+
+    /// Its grain, if it has one.
+    pub fn grain(&self) -> Option<Grain> {
+        let GrainClaim { mu_across, axis_O } = self.grain?;
+        Some(Grain { mu: [self.mu, mu_across], gamma: self.gamma, axis_O: axis_O.into() })
+    }
+
+    /// The smallest coefficient of friction.
+    pub fn least(&self) -> f64 {
+        self.grain.map_or(self.mu, |grain| self.mu.min(grain.mu_across))
+    }
+
+    /// The largest coefficient of friction.
+    pub fn most(&self) -> f64 {
+        self.grain.map_or(self.mu, |grain| self.mu.max(grain.mu_across))
+    }
+
+    /// The same cone at a share of its friction and torsion.
+    #[must_use]
+    pub fn scaled(&self, part: f64) -> Self {
+        let grain = self.grain.map(|grain| GrainClaim { mu_across: grain.mu_across * part, ..grain });
+        Self { mu: self.mu * part, gamma: self.gamma * part, grain }
+    }
+
+    /// Whether all its numbers mean something.
+    pub fn is_sound(&self) -> bool {
+        let across = self.grain.map_or(0.0, |grain| grain.mu_across);
+        let axis = self.grain.map_or(1.0, |grain| regrasp_api::Vec3::from(grain.axis_O).norm());
+        let numbers = [self.mu, self.gamma, across].into_iter();
+        numbers.into_iter().all(|x| x >= 0.0 && x.is_finite()) && axis > 0.0 && axis.is_finite()
     }
 }
 

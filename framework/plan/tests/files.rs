@@ -142,7 +142,7 @@ fn rich() -> Plan {
     let edge = |x| EdgeRecord { tangential: [x, 0.1], torsion: 0.001 };
     plan.claims.contact.cone = None;
     plan.claims.contact.cones = vec![
-        ConeRecord::Elliptic(ConeClaim { mu: 0.5, gamma: 0.002 }),
+        ConeRecord::Elliptic(ConeClaim::round(0.5, 0.002)),
         ConeRecord::Polyhedral(vec![edge(0.5), edge(-0.5), edge(0.0)]),
     ];
     plan.notes

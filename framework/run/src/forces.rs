@@ -15,7 +15,10 @@ impl Setup<'_> {
         motion: &Motion,
         records: &mut [SegmentRecord],
     ) {
-        let Some(cone) = claims.contact.cone.filter(|cone| cone.mu > 1e-6 && cone.mu <= 10.0) else { return };
+        let Some(cone) = claims.contact.cone.filter(|cone| cone.most() > 1e-6 && cone.most() <= 10.0) else {
+            return;
+        };
+        let Some(friction) = Friction::of(&cone.cone().without_torsion()) else { return };
         let stages: Vec<Stage<'_>> = motion
             .segments
             .iter()
@@ -30,7 +33,7 @@ impl Setup<'_> {
         let parts = (self.hand(), &self.scenario.object, Vec3::from(problem.gravity));
         let settings = settings(claims);
         // The friction is within its range, and so are the settings.
-        let Ok(held) = grasp_forces(parts, Friction::point(cone.mu), &stages, &settings) else { return };
+        let Ok(held) = grasp_forces(parts, friction, &stages, &settings) else { return };
         for ((record, segment), held) in records.iter_mut().zip(&motion.segments).zip(&held) {
             for ((state, q), held) in record.states.iter_mut().zip(&segment.states).zip(held) {
                 // Soft fingers may hold by torques instead, which a plan does not record.

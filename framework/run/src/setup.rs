@@ -296,7 +296,7 @@ impl<'a> Setup<'a> {
         let (mut plan, mut verdict) = (None, None);
         if !outcome.goal_ends.is_empty() {
             let mut file = self.plan_file(problem, &outcome, options.seed, stopped_by)?;
-            let judged = regrasp_verify::verify(&file);
+            let judged = regrasp_verify::verify_on(&file, options.threads);
             file.certificate = judged.certificate.clone();
             (plan, verdict) = (Some(file), Some(judged));
         }

@@ -69,7 +69,10 @@ pub(crate) fn claims(plan: &Plan, object: &ObjectModel) -> Check {
 
 /// What is wrong with the claimed cone, if anything.
 fn wrong_cone(model: &str, cone: &ConeClaim, plan: &Plan, friction: f64) -> Option<String> {
-    let ConeClaim { mu, gamma } = *cone;
+    let (mu, gamma) = (cone.most(), cone.gamma);
+    if !cone.is_sound() {
+        return Some(format!("a cone without meaning is claimed: {cone:?}"));
+    }
     if !(0.0..=friction).contains(&mu) {
         return Some(format!("friction {mu} is claimed, the object has {friction}"));
     }
@@ -78,6 +81,7 @@ fn wrong_cone(model: &str, cone: &ConeClaim, plan: &Plan, friction: f64) -> Opti
     }
     let settings = plan.scenario.plugins.get(&Slot::ContactModel).map(|choice| &choice.settings);
     match model {
+        _ if cone.grain.is_some() && KNOWN.contains(&model) => Some(format!("`{model}` has no grain")),
         "contact-model/pcwf" if gamma != 0.0 => {
             Some(format!("`{model}` transmits no torsion, {gamma} m is claimed"))
         }
@@ -96,7 +100,8 @@ fn wrong_cone(model: &str, cone: &ConeClaim, plan: &Plan, friction: f64) -> Opti
 /// What is wrong with the cone of a single contact, if anything.
 fn wrong_record(cone: &ConeRecord, friction: f64) -> Option<String> {
     let (mu, torsions): (f64, Vec<f64>) = match cone {
-        ConeRecord::Elliptic(cone) => (cone.mu, vec![cone.gamma]),
+        ConeRecord::Elliptic(cone) if !cone.is_sound() => (f64::NAN, vec![]),
+        ConeRecord::Elliptic(cone) => (cone.most(), vec![cone.gamma]),
         ConeRecord::Polyhedral(edges) => {
             let reach = edges.iter().map(|edge| edge.tangential[0].hypot(edge.tangential[1]));
             // NaN must not hide behind a larger number.

@@ -9,6 +9,7 @@
 //! Latombe, "Exact collision checking of robot paths", WAFR 2002).
 
 use crate::hand::Chains;
+use crate::motion::Motions;
 use crate::scene::Scene;
 use crate::shape::{self, Core};
 use crate::solid::{Gap, Solid};
@@ -25,8 +26,8 @@ const HALVINGS: u32 = 7;
 /// How far below the smallest distance found the distance of a pair may be between samples (m): what the
 /// certificate gives away so that its figure is a bound over all times.
 const GRAIN: f64 = 1e-4;
-/// The same over the whole plan.
-const MOST_HALVINGS: usize = 100_000;
+/// The same over a whole stretch.
+const MOST_HALVINGS: usize = 10_000;
 
 /// The distances of all pairs.
 pub(crate) struct ClearanceCheck<'s> {
@@ -35,6 +36,8 @@ pub(crate) struct ClearanceCheck<'s> {
     gauge: Gauge,
     demanded: f64,
     smallest: f64,
+    /// How far the bodies move over the step.
+    motions: Motions,
     /// For each pair a lower bound of its distance at the last state (m); minus infinity where nothing is
     /// known.
     lower: Vec<f64>,
@@ -77,19 +80,20 @@ struct Step<'l, 'p> {
     leg: &'l Leg<'p>,
     state: usize,
     pair: usize,
-    /// How far the two bodies move in sum, over the whole step (m).
-    motion: f64,
 }
 
 impl<'s> ClearanceCheck<'s> {
-    pub(crate) fn new(hand: &'s Chains, scene: &'s Scene, demanded: f64) -> Self {
+    /// `smallest` is a distance (m) that some pair of the plan is known to have, infinite where none is: what
+    /// is farther apart need not be exact.
+    pub(crate) fn new(hand: &'s Chains, scene: &'s Scene, demanded: f64, smallest: f64) -> Self {
         let nowhere = Gap { distance: 0.0, direction: Vec3::zeros(), facet: 0 };
         Self {
             hand,
             scene,
             gauge: Gauge::new("clearance", "m", Side::Above, demanded),
             demanded,
-            smallest: f64::INFINITY,
+            smallest,
+            motions: Motions::new(scene),
             lower: vec![f64::NEG_INFINITY; scene.pairs.len()],
             nearest: vec![nowhere; scene.pairs.len()],
             supports: vec![Default::default(); scene.pairs.len()],
@@ -99,15 +103,25 @@ impl<'s> ClearanceCheck<'s> {
         }
     }
 
-    /// Takes in a segment's first state: every pair anew, also whether one body lies inside the other.
-    pub(crate) fn start(&mut self, leg: &Leg<'_>, frames: &Frames) {
+    /// The smallest distance of a pair at a state (m), or the one known where none is smaller there.
+    pub(crate) fn glance(&mut self, leg: &Leg<'_>, frames: &Frames) -> f64 {
+        for pair in 0..self.scene.pairs.len() {
+            if self.compared(leg, pair) && self.balls(pair, frames) < self.smallest {
+                self.smallest = self.smallest.min(self.exact(pair, frames, true));
+            }
+        }
+        self.smallest
+    }
+
+    /// Takes in a stretch's first state: every pair anew, also whether one body lies inside the other.
+    pub(crate) fn start(&mut self, leg: &Leg<'_>, state: usize, frames: &Frames) {
         for pair in 0..self.scene.pairs.len() {
             self.lower[pair] = f64::INFINITY;
             if self.compared(leg, pair) {
                 let mut distance = self.balls(pair, frames);
                 if distance <= self.smallest.max(self.demanded) {
                     distance = self.exact(pair, frames, true);
-                    self.take(pair, distance, || leg.at(0));
+                    self.take(pair, distance, || leg.at(state));
                 }
                 self.lower[pair] = distance;
             }
@@ -135,15 +149,15 @@ impl<'s> ClearanceCheck<'s> {
         frames: &[Frames],
         touches: &[[Option<Touch>; MAX_FINGERS]],
     ) {
+        self.motions.step(self.scene, leg, state);
         for pair in 0..self.scene.pairs.len() {
-            let (a, b) = self.scene.pairs[pair];
-            let motion = self.scene.motion(a, leg, state) + self.scene.motion(b, leg, state);
+            let motion = self.motions.of_pair(self.scene.pairs[pair]) * SAMPLES as f64;
             let floor = self.smallest.max(self.demanded);
             if motion == 0.0 || self.lower[pair] - motion > floor {
                 self.lower[pair] -= motion;
                 continue;
             }
-            let step = Step { leg, state, pair, motion };
+            let step = Step { leg, state, pair };
             for (sample, touches) in touches.iter().enumerate().skip(1) {
                 self.sample(step, sample, frames, touches);
             }
@@ -159,7 +173,8 @@ impl<'s> ClearanceCheck<'s> {
         frames: &[Frames],
         touches: &[Option<Touch>; MAX_FINGERS],
     ) {
-        let (pair, motion) = (step.pair, step.motion / SAMPLES as f64);
+        let pair = step.pair;
+        let motion = self.motions.of_pair_seen(self.scene, self.scene.pairs[pair], sample, frames);
         let floor = self.smallest.max(self.demanded);
         let before = self.lower[pair];
         if before - motion > floor {
@@ -179,14 +194,14 @@ impl<'s> ClearanceCheck<'s> {
             let before = self.exact(pair, &frames[sample - 1], false);
             let after = self.exact(pair, &frames[sample], false);
             let start = (sample - 1) as f64 / SAMPLES as f64;
-            self.certify(step, (start, before), (end, after), 0);
+            self.certify(step, (start, before), (end, after), (motion, 0));
         }
     }
 
     /// Makes sure that the pair stays apart between two instants of a step, given as fraction and exact
-    /// distance.
-    fn certify(&mut self, step: Step<'_, '_>, from: (f64, f64), to: (f64, f64), depth: u32) {
-        let bound = (from.1 + to.1 - step.motion * (to.0 - from.0)) / 2.0;
+    /// distance; `motion` is how far the two move in sum in between (m).
+    fn certify(&mut self, step: Step<'_, '_>, from: (f64, f64), to: (f64, f64), (motion, depth): (f64, u32)) {
+        let bound = (from.1 + to.1 - motion) / 2.0;
         if bound > self.target() {
             return;
         }
@@ -203,8 +218,9 @@ impl<'s> ClearanceCheck<'s> {
         self.spare = frames;
         self.take(step.pair, distance, place);
         if distance > self.demanded {
-            self.certify(step, from, (middle, distance), depth + 1);
-            self.certify(step, (middle, distance), to, depth + 1);
+            let half = (motion / 2.0, depth + 1);
+            self.certify(step, from, (middle, distance), half);
+            self.certify(step, (middle, distance), to, half);
         }
     }
 
@@ -332,6 +348,12 @@ impl<'s> ClearanceCheck<'s> {
         let certified = |worst: f64| (worst - GRAIN).max(worst.min(self.demanded));
         let worst = self.gauge.worst()?;
         Some(Extreme::new(certified(worst), self.gauge.place().clone(), HoldsAt::EveryTime))
+    }
+
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, later: Self) {
+        self.smallest = self.smallest.min(later.smallest);
+        self.gauge.join(later.gauge);
     }
 
     pub(crate) fn check(self) -> Check {

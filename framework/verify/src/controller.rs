@@ -10,36 +10,66 @@ use crate::hand::Chains;
 use crate::scene::Scene;
 use crate::track::{Frames, Leg, State};
 use crate::verdict::{Check, Gauge, Side};
-use regrasp_api::{Body, FingerIndex, MAX_FINGER_JOINTS};
+use regrasp_api::{Body, FingerIndex, MAX_FINGER_JOINTS, MAX_FINGERS};
 use regrasp_plan::Place;
 
 /// How many times within a step the tips are placed where the bound does not do.
 const PLACES: usize = 20;
 
-/// Holds every step's cubic against its line; `None` where states carry no velocities.
-pub(crate) fn controller(hand: &Chains, scene: &Scene, legs: &[Leg<'_>], closure: f64) -> Option<Check> {
-    let mut gauge = Gauge::new("controller", "m", Side::AtMost, closure / 2.0);
-    let mut frames = [Frames::new(hand), Frames::new(hand)];
-    for leg in legs {
-        for (k, pair) in leg.states.windows(2).enumerate() {
-            let step = Step::of(&pair[0], &pair[1])?;
-            let bound = step.bound(hand, scene);
-            let close = bound <= gauge.limit().min(gauge.worst().unwrap_or(0.0));
-            if close {
-                continue;
-            }
-            if bound <= gauge.limit() {
-                gauge.note(bound, || leg.at(k));
-                continue;
-            }
-            for i in 1..PLACES {
-                let f = i as f64 / PLACES as f64;
-                let (distance, finger) = step.strays(hand, &mut frames, f);
-                gauge.note(distance, || Place { finger: Some(finger), ..leg.between(k, f) });
+/// Holds every step's cubic against its line.
+pub(crate) struct ControllerCheck {
+    gauge: Gauge,
+    frames: [Frames; 2],
+    /// Whether a state carries no velocities.
+    is_unplayed: bool,
+}
+
+impl ControllerCheck {
+    pub(crate) fn new(hand: &Chains, closure: f64) -> Self {
+        Self {
+            gauge: Gauge::new("controller", "m", Side::AtMost, closure / 2.0),
+            frames: [Frames::new(hand), Frames::new(hand)],
+            is_unplayed: false,
+        }
+    }
+
+    /// Takes in the step after a state.
+    pub(crate) fn step(&mut self, hand: &Chains, scene: &Scene, leg: &Leg<'_>, state: usize) {
+        let Some(step) = Step::of(&leg.states[state], &leg.states[state + 1]) else {
+            self.is_unplayed = true;
+            return;
+        };
+        let bounds = step.bounds(hand, scene);
+        let bound = bounds.iter().copied().fold(0.0, f64::max);
+        let gauge = &mut self.gauge;
+        if bound <= gauge.limit().min(gauge.worst().unwrap_or(0.0)) {
+            return;
+        }
+        if bound <= gauge.limit() {
+            return gauge.note(bound, || leg.at(state));
+        }
+        for i in 1..PLACES {
+            let f = i as f64 / PLACES as f64;
+            for (finger, bound) in bounds.iter().enumerate().take(hand.fingers.len()) {
+                // What cannot be the worst is not placed.
+                if *bound > gauge.worst().unwrap_or(0.0) {
+                    let distance = step.strays(hand, &mut self.frames, finger, f);
+                    gauge.note(distance, || Place { finger: Some(finger), ..leg.between(state, f) });
+                }
             }
         }
     }
-    Some(gauge.check())
+
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, later: Self) {
+        self.gauge.join(later.gauge);
+        self.is_unplayed |= later.is_unplayed;
+    }
+
+    /// `None` where states carry no velocities.
+    pub(crate) fn check(self) -> Option<Check> {
+        (!self.is_unplayed).then(|| self.gauge.check())
+    }
 }
 
 /// One step: joints at its ends, and the end velocities times the duration.
@@ -67,44 +97,39 @@ impl<'s> Step<'s> {
         Some(Self { from: &from.joints, change, slopes, along })
     }
 
-    /// How far any tip can be from the line (m), at any time; infinite where the progress may leave the step.
+    /// How far each tip can be from the line (m), at any time; infinite where the progress may leave the
+    /// step.
     ///
     /// What is not progress is f (1 - f)² e0 - f² (1 - f) e1 with the slopes' parts e0, e1 across the change:
     /// at most 4/27 (|e0| + |e1|), and the progress stays within the step where both its slopes lie between 0
     /// and 3 (Fritsch and Carlson, "Monotone piecewise cubic interpolation", SINUM 1980).
-    fn bound(&self, hand: &Chains, scene: &Scene) -> f64 {
+    fn bounds(&self, hand: &Chains, scene: &Scene) -> [f64; MAX_FINGERS] {
         if !self.along.iter().all(|a| (0.0..=3.0).contains(a)) {
-            return f64::INFINITY;
+            return [f64::INFINITY; MAX_FINGERS];
         }
         let across = |j: usize| {
             let e = |end: usize| (self.slopes[end][j] - self.along[end] * self.change[j]).abs();
             4.0 / 27.0 * (e(0) + e(1))
         };
-        let finger = |(finger, chain): (usize, &crate::hand::Chain)| {
+        let mut bounds = [0.0; MAX_FINGERS];
+        for (finger, (chain, bound)) in hand.fingers.iter().zip(&mut bounds).enumerate() {
             let levers = scene.tip_levers(FingerIndex(finger as u8));
-            (0..chain.joints.len()).map(|j| times(levers[j], across(chain.first + j))).sum::<f64>()
-        };
-        hand.fingers.iter().enumerate().map(finger).fold(0.0, f64::max)
+            *bound = (0..chain.joints.len()).map(|j| times(levers[j], across(chain.first + j))).sum::<f64>();
+        }
+        bounds
     }
 
-    /// How far a tip is from the line at a fraction of the time (m), and which.
-    fn strays(&self, hand: &Chains, frames: &mut [Frames; 2], f: f64) -> (f64, usize) {
+    /// How far a tip is from the line at a fraction of the time (m).
+    fn strays(&self, hand: &Chains, frames: &mut [Frames; 2], finger: usize, f: f64) -> f64 {
         let cubic = |change: f64, slopes: [f64; 2]| {
             let (rising, g) = (f * f * (3.0 - 2.0 * f), 1.0 - f);
             change * rising + slopes[0] * f * g * g - slopes[1] * f * f * g
         };
         let progress = cubic(1.0, self.along).clamp(0.0, 1.0);
-        let joints = |j: usize| {
-            let played = cubic(self.change[j], [self.slopes[0][j], self.slopes[1][j]]);
-            [self.from[j] + played, self.from[j] + self.change[j] * progress]
-        };
-        let joints: Vec<[f64; 2]> = (0..self.from.len()).map(joints).collect();
-        for (i, frames) in frames.iter_mut().enumerate() {
-            frames.place_joints(hand, |j| joints[j][i]);
-        }
-        let distance = |finger: usize| (frames[0].p_HTip[finger] - frames[1].p_HTip[finger]).norm();
-        let all = (0..hand.fingers.len()).map(|finger| (distance(finger), finger));
-        all.fold((0.0, 0), |most, one| if one.0 > most.0 || one.0.is_nan() { one } else { most })
+        let played = |j: usize| self.from[j] + cubic(self.change[j], [self.slopes[0][j], self.slopes[1][j]]);
+        frames[0].place_finger(hand, finger, played);
+        frames[1].place_finger(hand, finger, |j| self.from[j] + self.change[j] * progress);
+        (frames[0].p_HTip[finger] - frames[1].p_HTip[finger]).norm()
     }
 }
 

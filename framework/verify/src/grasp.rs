@@ -3,6 +3,7 @@
 use crate::clearance::ClearanceCheck;
 use crate::contact_checks::deviation;
 use crate::hand::Chains;
+use crate::object::weight_H;
 use crate::scene::Scene;
 use crate::series::SeriesError;
 use crate::stability::{HoldingCheck, HoldsCheck, StabilityCheck};
@@ -10,11 +11,11 @@ use crate::surface::SurfaceCheck;
 use crate::touch::Touch;
 use crate::track::{Frames, Leg, state};
 use crate::verdict::{Check, Gauge, Side};
-use crate::walk::{prepare, travel, weight_H};
+use crate::walk::{prepare, travel};
 use crate::{claims, motion_checks};
 use regrasp_api::{BodyPair, MAX_FINGERS, Tolerances, Vec3};
 use regrasp_plan::{Claims, Criterion, Place, Plan, StateRecord};
-use std::slice;
+use std::{slice, thread};
 
 /// Judges grasps of one problem.
 ///
@@ -52,8 +53,9 @@ impl GraspVerifier {
         let scene = Scene::new(&plan.scenario.problem, &object, &hand, &travel(&hand, &[]));
         let scene = scene.map_err(SeriesError::new)?;
         let tolerances = plan.scenario.problem.limits.tolerances;
-        let surface = SurfaceCheck::new(&scene, hand.tip_radius, tolerances.closure).check();
-        for check in surface.into_iter().chain([claims::claims(plan, &object)]) {
+        let mut surface = SurfaceCheck::new(&scene, hand.tip_radius, tolerances.closure);
+        surface.look_all_over(&scene, thread::available_parallelism().map_or(1, usize::from));
+        for check in surface.check().into_iter().chain([claims::claims(plan, &object)]) {
             if !check.ok {
                 let note = check.place.note.unwrap_or_default();
                 return Err(SeriesError::new(format!("{}: {note}", check.name)));
@@ -73,7 +75,7 @@ impl GraspVerifier {
         };
         GraspJudge {
             of: self,
-            clearance: ClearanceCheck::new(&self.hand, &self.scene, self.tolerances.clearance),
+            clearance: ClearanceCheck::new(&self.hand, &self.scene, self.tolerances.clearance, f64::INFINITY),
             frames: Frames::new(&self.hand),
             facets: [0; MAX_FINGERS],
             stability: StabilityCheck::new(&self.claims, self.weight_H),

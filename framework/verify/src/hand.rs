@@ -5,6 +5,7 @@ use regrasp_api::{
     FingerDescription, HandDescription, JointDescription, JointKind, MAX_FINGER_JOINTS, MAX_FINGERS, Pose,
     Rotation, Vec3,
 };
+use std::ops::Range;
 
 /// All fingers; joints and links are counted through, finger after finger.
 #[derive(Debug)]
@@ -94,6 +95,11 @@ impl Chain {
         joints[0].X_PJ = X_HBase * joints[0].X_PJ;
         let driven = driven(finger)?;
         Ok(Self { joints, p_LTip, first, driven })
+    }
+
+    /// Its joints among all joints.
+    pub(crate) fn range(&self) -> Range<usize> {
+        self.first..self.first + self.joints.len()
     }
 
     /// The frames of all links in H, base to tip.

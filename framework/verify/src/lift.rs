@@ -55,10 +55,6 @@ impl<'s> LiftCheck<'s> {
         }
     }
 
-    pub(crate) fn start(&mut self) {
-        self.row.clear();
-    }
-
     /// Takes in one sample of a regrasp.
     pub(crate) fn sample(&mut self, finger: usize, state: usize, sample: usize, frames: &Frames) {
         let p_OTip = frames.p_OTip(finger);
@@ -137,7 +133,11 @@ impl<'s> LiftCheck<'s> {
         let (start, end) = (a.fraction, if b.state == state { b.fraction } else { 1.0 });
         let tip = Body::Fingertip(regrasp_api::FingerIndex(finger as u8));
         let body = self.scene.bodies.iter().position(|solidity| solidity.body == tip);
-        let motion = body.map_or(0.0, |body| self.scene.motion(body, leg, state)) * (end - start);
+        let motion = body.map_or(0.0, |body| {
+            let steps: Vec<f64> = leg.joint_steps(state).collect();
+            self.scene.bodies[body].motion(&steps).0
+        });
+        let motion = motion * (end - start);
         let target = clearance.target();
         let bound = (a.free + b.free - motion) / 2.0;
         if bound > target || a.free.min(b.free) <= target {
@@ -157,6 +157,12 @@ impl<'s> LiftCheck<'s> {
         let end = Instant { state, fraction: end, ..*b };
         self.certify(leg, finger, (a, &middle), depth + 1, clearance);
         self.certify(leg, finger, (&middle, &end), depth + 1, clearance);
+    }
+
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, later: Self) {
+        self.rise.join(later.rise);
+        self.touch.join(later.touch);
     }
 
     pub(crate) fn checks(self) -> [Check; 2] {

@@ -34,6 +34,11 @@ pub(crate) fn object_of(plan: &Plan) -> Result<ObjectModel, String> {
     Ok(ObjectModel::new(mesh, None, description.mass, description.friction))
 }
 
+/// The object's weight in the hand's frame (N).
+pub(crate) fn weight_H(plan: &Plan, object: &ObjectModel) -> Vec3 {
+    Vec3::from(plan.scenario.problem.gravity) * object.mass
+}
+
 /// A mesh that a plan carries.
 pub(crate) fn mesh_of(source: &MeshSource) -> Result<Mesh, String> {
     if source.file.is_some() {

@@ -3,9 +3,10 @@
 use crate::hand::Chains;
 use crate::shape::{Core, distance};
 use crate::solid::Solid;
-use crate::track::{Frames, Leg};
+use crate::track::Frames;
 use regrasp_api::{
-    Body, FingerIndex, HandDescription, MAX_FINGER_JOINTS, ObjectModel, PlacedShape, Pose, Problem, Vec3,
+    Body, FingerIndex, HandDescription, JointKind, MAX_FINGER_JOINTS, ObjectModel, PlacedShape, Pose,
+    Problem, Vec3,
 };
 use std::sync::Arc;
 
@@ -36,6 +37,22 @@ pub(crate) struct Solidity {
     /// First joint of its finger, and how far its points can move for one unit of each joint (m).
     first: usize,
     pub(crate) levers: [f64; MAX_FINGER_JOINTS],
+    /// Which of these joints turn it: 1 for each, else 0.
+    turning: [f64; MAX_FINGER_JOINTS],
+}
+
+impl Solidity {
+    /// How far (m) any point of the body moves at most, and how far its joints turn in sum (rad), where each
+    /// joint of the hand moves by its step.
+    pub(crate) fn motion(&self, steps: &[f64]) -> (f64, f64) {
+        if self.link.is_none() {
+            return (0.0, 0.0);
+        }
+        let joints = self.levers.iter().zip(&self.turning).zip(&steps[self.first..]);
+        joints.fold((0.0, 0.0), |(motion, turned), ((lever, turning), step)| {
+            (motion + lever_times(*lever, *step), turned + turning * step)
+        })
+    }
 }
 
 impl Scene {
@@ -113,6 +130,7 @@ impl Scene {
             link: None,
             first: 0,
             levers: Default::default(),
+            turning: Default::default(),
         });
     }
 
@@ -123,6 +141,9 @@ impl Scene {
         body.link = Some(chain.first + link);
         body.first = chain.first;
         body.levers = chain.levers(link, reach, &travel[chain.first..]);
+        for (turning, joint) in body.turning.iter_mut().zip(&chain.joints[..=link]) {
+            *turning = f64::from(u8::from(joint.kind == JointKind::Revolute));
+        }
     }
 
     fn pair_up(&mut self, problem: &Problem, hand: &Chains) -> Result<(), String> {
@@ -177,22 +198,6 @@ impl Scene {
             (None, Body::Object) => &frames.X_HO,
             _ => &IDENTITY,
         }
-    }
-
-    /// How far (m) any point of a body moves at most from a state to the next; its speed is even over the
-    /// step, or below this.
-    pub(crate) fn motion(&self, body: usize, leg: &Leg<'_>, state: usize) -> f64 {
-        let this = &self.bodies[body];
-        if this.link.is_some() {
-            let steps = leg.joint_steps(state).skip(this.first);
-            return this.levers.iter().zip(steps).map(|(lever, step)| lever_times(*lever, step)).sum();
-        }
-        if this.body != Body::Object {
-            return 0.0;
-        }
-        let (from, to) = (&leg.states[state].X_HO, &leg.states[state + 1].X_HO);
-        let angle = regrasp_api::angle_between(&from.rotation, &to.rotation);
-        (to.translation.vector - from.translation.vector).norm() + angle * self.object_reach
     }
 }
 

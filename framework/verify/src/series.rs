@@ -3,11 +3,12 @@
 use crate::clearance::ClearanceCheck;
 use crate::contact_checks::ContactChecks;
 use crate::hand::Chains;
+use crate::object::weight_H;
 use crate::scene::Scene;
 use crate::stability::StabilityCheck;
 use crate::track::{self, Frames, Leg};
-use crate::walk::{prepare, travel, weight_H};
-use regrasp_api::{Body, BodyPair, FingerIndex};
+use crate::walk::{prepare, travel};
+use regrasp_api::{Body, BodyPair, FingerIndex, MAX_FINGERS};
 use regrasp_plan::Plan;
 use std::fmt;
 
@@ -55,9 +56,9 @@ pub fn series(plan: &Plan) -> Result<Vec<Vec<StateFigures>>, SeriesError> {
     let mut figures = Figures {
         hand: &hand,
         lift: problem.limits.resolution.retreat.into_iter().fold(problem.limits.resolution.lift, f64::min),
-        contacts: ContactChecks::new(&hand, &scene, tolerances, plan.claims.transfer_law),
+        contacts: ContactChecks::new(&hand, &scene, tolerances),
         stability: StabilityCheck::new(&plan.claims, weight_H(plan, &object)),
-        clearance: ClearanceCheck::new(&hand, &scene, tolerances.clearance),
+        clearance: ClearanceCheck::new(&hand, &scene, tolerances.clearance, f64::INFINITY),
         frames: Frames::new(&hand),
     };
     Ok(legs.iter().map(|leg| figures.segment(leg)).collect())
@@ -86,7 +87,10 @@ impl Figures<'_> {
 
     fn state(&mut self, leg: &Leg<'_>, state: usize) -> StateFigures {
         self.frames.place(self.hand, leg, state, 0.0);
-        let touches = self.contacts.sample(leg, state, 0, &self.frames);
+        let mut touches = [None; MAX_FINGERS];
+        for (finger, touch) in touches.iter_mut().enumerate().take(self.hand.fingers.len()) {
+            *touch = leg.states[state].holds(finger).then(|| self.contacts.touch(finger, &self.frames));
+        }
         StateFigures {
             margin: self.stability.figure(leg, &self.frames.X_HO.rotation, &touches),
             clearance: self.clearance.closest(leg, &self.frames),

@@ -1,6 +1,7 @@
 //! A closed mesh with its tree: closest points, distances of segments, supporting planes, all exact.
 
 use crate::border::{segment, vector};
+use crate::outer::Outer;
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::partitioning::BvhNode;
 use parry3d_f64::query::details::closest_points_segment_segment;
@@ -11,11 +12,17 @@ use regrasp_api::{Mesh, Vec3};
 /// With more vertices than this, the tree finds the outermost one faster than going through all.
 const FEW_VERTICES: usize = 1000;
 
+/// Below this distance (m) its direction is too uncertain to put up a plane by.
+const TOUCHING: f64 = 1e-6;
+/// What rounding may take from a distance (m).
+const ROUNDING: f64 = 1e-12;
+
 /// A closed mesh with its tree.
 #[derive(Debug)]
 pub(crate) struct Solid {
     pub(crate) vertices: Vec<Vec3>,
     mesh: TriMesh,
+    outer: Outer,
 }
 
 /// The closest point of a solid's surface.
@@ -41,7 +48,7 @@ impl Solid {
         let vertices = mesh.vertices().iter().map(vector).collect();
         let flags = TriMeshFlags::ORIENTED;
         let tree = TriMesh::with_flags(vertices, mesh.facets().to_vec(), flags).map_err(|e| e.to_string())?;
-        Ok(Self { vertices: mesh.vertices().to_vec(), mesh: tree })
+        Ok(Self { vertices: mesh.vertices().to_vec(), mesh: tree, outer: Outer::new(mesh) })
     }
 
     pub(crate) fn surface(&self) -> &TriMesh {
@@ -55,6 +62,14 @@ impl Solid {
     /// The closest point of the surface. `near` is a facet that is likely to hold it; it changes the cost
     /// alone.
     pub(crate) fn closest(&self, p: &Vec3, near: u32) -> Closest {
+        match self.outer.closest(&self.vertices, p, near) {
+            Some((point, facet)) => Closest { point, inside: false, facet },
+            None => self.search(p, near),
+        }
+    }
+
+    /// The closest point by a search of the tree.
+    pub(crate) fn search(&self, p: &Vec3, near: u32) -> Closest {
         let p = vector(p);
         let bound = self.triangle(near).project_local_point(p, false).point;
         // The facet's own distance must stay within the bound, rounding included.
@@ -87,8 +102,25 @@ impl Solid {
 
     /// Where a segment comes closest to the surface; `near` as for [`Self::closest`].
     pub(crate) fn gap_to_segment(&self, p: &Vec3, q: &Vec3, near: u32) -> Gap {
+        let at_end = self.gap_at_end(p, q, near).or_else(|| self.gap_at_end(q, p, near));
+        at_end.unwrap_or_else(|| self.search_segment(p, q, near))
+    }
+
+    /// The same where it is the end `p` that comes closest, and no search is needed: all of the mesh is on
+    /// one side of a plane, and `q` on the other.
+    fn gap_at_end(&self, p: &Vec3, q: &Vec3, near: u32) -> Option<Gap> {
+        let (point, facet) = self.outer.closest(&self.vertices, p, near)?;
+        let away = p - point;
+        (away.dot(&(q - p)) >= 0.0).then(|| Gap::new(away.norm(), vector(&away), facet))
+    }
+
+    /// The same by a search of the tree, unless `near` is seen to hold it.
+    pub(crate) fn search_segment(&self, p: &Vec3, q: &Vec3, near: u32) -> Gap {
         let line = segment(p, q);
         let first = between(&self.triangle(near), &line);
+        if self.is_least(p, q, first) {
+            return Gap::new(first.0, first.1, near);
+        }
         let (low, high) = (line.a.min(line.b), line.a.max(line.b));
         let bound = |node: &BvhNode, _: f64| {
             let half = (node.maxs() - node.mins()) * 0.5;
@@ -103,6 +135,14 @@ impl Solid {
             Some((facet, (distance, away))) => Gap::new(distance, away, facet),
             None => Gap::new(first.0, first.1, near),
         }
+    }
+
+    /// Whether a distance found of a segment, with the vector to it from the surface, is the least: a plane
+    /// across that vector has all vertices on the one side and the segment at that distance on the other.
+    fn is_least(&self, p: &Vec3, q: &Vec3, (distance, away): (f64, Vector)) -> bool {
+        let n = from_vector(away) / distance;
+        let end = n.dot(p).min(n.dot(q));
+        distance > TOUCHING && end - self.support(&n) >= distance - ROUNDING
     }
 
     /// The largest of `n · v` over the vertices.

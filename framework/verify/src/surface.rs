@@ -5,6 +5,7 @@
 //! asks for, and the bound must hold: for each touching fingertip at each sample of the motion, and for a
 //! fingertip put all over the twin, wherever it enters the twin nowhere.
 
+use crate::order::in_order;
 use crate::scene::Scene;
 use crate::solid::Solid;
 use crate::touch::Touch;
@@ -13,7 +14,6 @@ use regrasp_api::{
     ContactSurface, ContactSurfaceWord, MAX_FINGERS, Mesh, ObjectModel, ObjectShape, Twin, Vec3, mesh_digest,
 };
 use regrasp_plan::{Place, Plan};
-use std::thread;
 
 /// The largest bound (m) that a twin may have unasked.
 const FARTHEST: f64 = 3e-4;
@@ -21,8 +21,8 @@ const FARTHEST: f64 = 3e-4;
 const SPACING: f64 = 0.1;
 /// ... or there are about as many as this.
 const MOST_PLACES: f64 = 40_000.0;
-/// No more threads than this look.
-const MOST_THREADS: usize = 8;
+/// Into how many shares the facets are dealt.
+const SHARES: usize = 8;
 /// How deep (m) the ball may sink into the twin at a place where it can be.
 const SINK: f64 = 1e-6;
 
@@ -62,16 +62,25 @@ pub(crate) struct SurfaceCheck {
 }
 
 impl SurfaceCheck {
-    /// Looks all over the twin, if there is one.
+    /// For a scene whose contacts live on a twin; there is nothing to check where they do not.
     pub(crate) fn new(scene: &Scene, radius: f64, closure: f64) -> Self {
-        let mut check = Self { gauge: None, radius, facets: [0; MAX_FINGERS] };
-        if scene.has_twin() {
-            let mut gauge = Gauge::new("contact-surface", "m", Side::AtMost, scene.bound + closure);
-            let gap = all_over(scene, radius);
-            gauge.note(gap, || Place { note: Some("on the contact surface".into()), ..Default::default() });
-            check.gauge = Some(gauge);
+        let limit = scene.bound + closure;
+        let gauge = scene.has_twin().then(|| Gauge::new("contact-surface", "m", Side::AtMost, limit));
+        Self { gauge, radius, facets: [0; MAX_FINGERS] }
+    }
+
+    /// Looks all over the twin, if there is one, on so many threads.
+    pub(crate) fn look_all_over(&mut self, scene: &Scene, threads: usize) {
+        let Some(gauge) = &mut self.gauge else { return };
+        let gap = all_over(scene, self.radius, threads);
+        gauge.note(gap, || Place { note: Some("on the contact surface".into()), ..Default::default() });
+    }
+
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, later: Self) {
+        if let (Some(gauge), Some(later)) = (&mut self.gauge, later.gauge) {
+            gauge.join(later);
         }
-        check
     }
 
     /// Takes in a touching fingertip.
@@ -94,22 +103,19 @@ impl SurfaceCheck {
 }
 
 /// The farthest (m), on either side, that a ball touching the twin is from touching the object: looked for on
-/// all cores, which share the facets.
-fn all_over(scene: &Scene, radius: f64) -> f64 {
-    let cores = thread::available_parallelism().map_or(1, |cores| cores.get().min(MOST_THREADS)) as u32;
+/// so many threads. The facets are shared out alike whatever their number.
+fn all_over(scene: &Scene, radius: f64, threads: usize) -> f64 {
     let spacing = (SPACING * radius).max((scene.touched.area() / MOST_PLACES).sqrt());
-    let share = |core: u32| {
-        let facets = (core..scene.touched.facet_count()).step_by(cores as usize);
+    let share = |first: usize| {
+        let facets = (first as u32..scene.touched.facet_count()).step_by(SHARES);
         let mut near = 0;
         facets.fold(0.0f64, |worst, facet| worst_on(scene, radius, spacing, facet, &mut near, worst))
     };
-    thread::scope(|scope| {
-        let others: Vec<_> = (1..cores).map(|core| scope.spawn(move || share(core))).collect();
-        // A thread that panics found nothing good.
-        let others = others.into_iter().map(|other| other.join().unwrap_or(f64::NAN));
-        let worse = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) };
-        others.fold(share(0), worse)
-    })
+    let mut worst = 0.0f64;
+    in_order(SHARES, threads, share, |_, found| {
+        worst = if worst.is_nan() || found.is_nan() { f64::NAN } else { worst.max(found) };
+    });
+    worst
 }
 
 /// The same over one facet, or `worst` where that is more; `near` is where to look first.

@@ -163,15 +163,43 @@ impl Frames {
         self.place_joints(hand, |j| from.joints[j] + (to.joints[j] - from.joints[j]) * fraction);
     }
 
+    /// The same, `start` being where everything is at the state: what rests over the step is where it is.
+    pub(crate) fn place_after(
+        &mut self,
+        start: &Self,
+        hand: &Chains,
+        leg: &Leg<'_>,
+        state: usize,
+        fraction: f64,
+    ) {
+        let (from, to) = (&leg.states[state], &leg.states[state + 1]);
+        let rests = from.X_HO == to.X_HO;
+        self.X_HO = if rests { start.X_HO } else { interpolate(&from.X_HO, &to.X_HO, fraction) };
+        for (finger, chain) in hand.fingers.iter().enumerate() {
+            let range = chain.range();
+            if from.joints[range.clone()] == to.joints[range.clone()] {
+                self.X_HL[range.clone()].copy_from_slice(&start.X_HL[range]);
+                self.p_HTip[finger] = start.p_HTip[finger];
+            } else {
+                let joint = |j: usize| from.joints[j] + (to.joints[j] - from.joints[j]) * fraction;
+                self.place_finger(hand, finger, joint);
+            }
+        }
+    }
+
     /// Places all links, joint by joint counted through.
     pub(crate) fn place_joints(&mut self, hand: &Chains, joint: impl Fn(usize) -> f64) {
-        for (finger, chain) in hand.fingers.iter().enumerate() {
-            let range = chain.first..chain.first + chain.joints.len();
-            let mut q = [0.0; regrasp_api::MAX_FINGER_JOINTS];
-            q.iter_mut().zip(range.clone()).for_each(|(q, j)| *q = joint(j));
-            chain.frames(&q[..range.len()], &mut self.X_HL[range]);
-            self.p_HTip[finger] = self.tip(chain);
-        }
+        (0..hand.fingers.len()).for_each(|finger| self.place_finger(hand, finger, &joint));
+    }
+
+    /// Places the links of one finger.
+    pub(crate) fn place_finger(&mut self, hand: &Chains, finger: usize, joint: impl Fn(usize) -> f64) {
+        let chain = &hand.fingers[finger];
+        let range = chain.range();
+        let mut q = [0.0; regrasp_api::MAX_FINGER_JOINTS];
+        q.iter_mut().zip(range.clone()).for_each(|(q, j)| *q = joint(j));
+        chain.frames(&q[..range.len()], &mut self.X_HL[range]);
+        self.p_HTip[finger] = self.tip(chain);
     }
 
     fn tip(&self, chain: &crate::hand::Chain) -> Vec3 {

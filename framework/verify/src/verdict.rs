@@ -1,6 +1,6 @@
 //! The verifier's answer: every check with its worst value, limit and place.
 
-use regrasp_plan::{Place, PlanCertificate};
+use regrasp_plan::{Extreme, HoldsAt, Place, PlanCertificate};
 use serde::Serialize;
 
 /// The verifier's answer on one plan.
@@ -81,6 +81,9 @@ impl Side {
     }
 }
 
+/// The unit of checks that count what is wrong.
+const FAULTS: &str = "faults";
+
 /// Gathers the worst value of one check.
 #[derive(Clone, Debug)]
 pub(crate) struct Gauge {
@@ -99,7 +102,7 @@ impl Gauge {
 
     /// A check that counts faults: none is allowed.
     pub(crate) fn faults(name: &'static str) -> Self {
-        let mut gauge = Self::new(name, "faults", Side::AtMost, 0.0);
+        let mut gauge = Self::new(name, FAULTS, Side::AtMost, 0.0);
         gauge.worst = Some(0.0);
         gauge
     }
@@ -132,6 +135,21 @@ impl Gauge {
         self.worst = Some(count + 1.0);
     }
 
+    /// Takes in what the same check gathered later in the plan, as if one gauge had seen both.
+    pub(crate) fn join(&mut self, later: Self) {
+        match later.worst {
+            None => {}
+            Some(count) if self.unit == FAULTS => {
+                let before = self.worst.unwrap_or(0.0);
+                if before == 0.0 && count > 0.0 {
+                    self.place = later.place;
+                }
+                self.worst = Some(before + count);
+            }
+            Some(value) => self.note(value, || later.place),
+        }
+    }
+
     /// Says something about the check as a whole.
     pub(crate) fn remark(&mut self, note: &str) {
         self.place.note = Some(note.into());
@@ -147,6 +165,11 @@ impl Gauge {
 
     pub(crate) fn place(&self) -> &Place {
         &self.place
+    }
+
+    /// The worst value as it stands at the samples, for the certificate.
+    pub(crate) fn extreme(&self) -> Option<Extreme> {
+        Some(Extreme::new(self.worst?, self.place.clone(), HoldsAt::Samples))
     }
 
     pub(crate) fn check(self) -> Check {
@@ -197,6 +220,29 @@ mod tests {
             gauge.note(3.0, || at(2));
             assert_eq!(gauge.place(), &at(0));
             assert!(!gauge.check().ok);
+        }
+    }
+
+    #[test]
+    fn joined_gauges_are_as_one_that_saw_all() {
+        let values = [1.0, 3.0, f64::NAN, 3.0, 4.0];
+        for cut in 0..=values.len() {
+            for until in [2, 4] {
+                let gauge = |range: std::ops::Range<usize>| {
+                    let mut gauge = Gauge::new("a", "m", Side::AtMost, 2.0);
+                    let mut faults = Gauge::faults("b");
+                    for k in range.filter(|&k| k != until) {
+                        gauge.note(values[k], || at(k));
+                        faults.fault(|| at(k));
+                    }
+                    (gauge, faults)
+                };
+                let (mut first, whole) = (gauge(0..cut), gauge(0..values.len()));
+                let later = gauge(cut..values.len());
+                first.0.join(later.0);
+                first.1.join(later.1);
+                assert_eq!(format!("{first:?}"), format!("{whole:?}"), "{cut} {until}");
+            }
         }
     }
 

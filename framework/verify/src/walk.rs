@@ -1,17 +1,20 @@
-//! One walk along the whole plan, which every check takes part in.
+//! The verdict on a plan: its motion looked at stretch by stretch, and all else.
 
 use crate::clearance::ClearanceCheck;
-use crate::contact_checks::ContactChecks;
 use crate::hand::Chains;
-use crate::lift::LiftCheck;
+use crate::order::in_order;
 use crate::scene::Scene;
-use crate::stability::{ConesCheck, HoldingCheck, HoldsCheck, StabilityCheck};
-use crate::touch::Touch;
-use crate::track::{self, Frames, Leg, SAMPLES};
+use crate::slip::SlipCheck;
+use crate::stability::{ConesCheck, HoldingCheck, HoldsCheck};
+use crate::stretch::{Look, Seen, Stretch, stretches};
+use crate::track::{self, Frames, Leg};
 use crate::verdict::{Gauge, Verdict};
-use crate::{claims, controller, ends, motion_checks, object, rates, surface};
-use regrasp_api::{MAX_FINGERS, ObjectModel, Tolerances, Vec3};
-use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
+use crate::{claims, ends, motion_checks, object, rates, surface};
+use regrasp_api::ObjectModel;
+use regrasp_plan::{Place, Plan, PlanCertificate};
+
+/// Where there are fewer stretches for each thread, fewer threads look.
+const FEWEST: usize = 2;
 
 /// Verifies a plan. Whatever the plan holds, there is a verdict.
 ///
@@ -43,6 +46,11 @@ use regrasp_plan::{Criterion, Place, Plan, PlanCertificate};
 ///
 /// Cost: about 0.1 ms for a state of four fingers on one core.
 pub fn verify(plan: &Plan) -> Verdict {
+    verify_on(plan, 1)
+}
+
+/// [`verify`] on so many threads: the verdict is the same for any number of them.
+pub fn verify_on(plan: &Plan, threads: usize) -> Verdict {
     let problem = &plan.scenario.problem;
     let (hand, object) = match prepare(plan) {
         Ok(parts) => parts,
@@ -52,10 +60,43 @@ pub fn verify(plan: &Plan) -> Verdict {
         Ok(legs) => legs,
         Err(form) => return Verdict::new(vec![form.check()], None),
     };
-    match Scene::new(problem, &object, &hand, &travel(&hand, &legs)) {
-        Ok(scene) => Walk { plan, hand: &hand, object: &object, scene: &scene, legs: &legs }.verdict(),
-        Err(note) => refuse(note),
-    }
+    let scene = match Scene::new(problem, &object, &hand, &travel(&hand, &legs)) {
+        Ok(scene) => scene,
+        Err(note) => return refuse(note),
+    };
+    let has_forces = legs.iter().flat_map(|leg| &leg.states).any(|state| state.record.forces.is_some());
+    let (hand, object, scene, legs) = (&hand, &object, &scene, &legs[..]);
+    let mut look = Look { plan, hand, object, scene, legs, has_forces, smallest: f64::INFINITY };
+    let stretches = stretches(legs);
+    look.smallest = smallest(&look, &stretches);
+    let mut seen = look.nothing();
+    let mut slip = SlipCheck::new(hand, &problem.limits.tolerances, plan.claims.transfer_law);
+    seen.contacts.look_all_over(threads);
+    let threads = threads.min(stretches.len() / FEWEST);
+    in_order(
+        stretches.len(),
+        threads,
+        |k| look.at(stretches[k]),
+        |k, next| {
+            let leg = &legs[stretches[k].leg];
+            seen.join(next).iter().for_each(|event| slip.take(leg, event));
+        },
+    );
+    gather(&look, seen, slip)
+}
+
+/// The smallest distance at the first states of stretches (m).
+fn smallest(look: &Look<'_>, stretches: &[Stretch]) -> f64 {
+    let Look { plan, hand, scene, legs, .. } = *look;
+    let demanded = plan.scenario.problem.limits.tolerances.clearance;
+    let mut clearance = ClearanceCheck::new(hand, scene, demanded, f64::INFINITY);
+    let mut frames = Frames::new(hand);
+    let glance = |stretch: &Stretch| {
+        let leg = &legs[stretch.leg];
+        frames.place(hand, leg, stretch.from, 0.0);
+        clearance.glance(leg, &frames)
+    };
+    stretches.iter().map(glance).last().unwrap_or(f64::INFINITY)
 }
 
 fn refuse(note: String) -> Verdict {
@@ -81,176 +122,40 @@ pub(crate) fn travel(hand: &Chains, legs: &[Leg<'_>]) -> Vec<f64> {
     travel
 }
 
-/// The object's weight in the hand's frame (N).
-pub(crate) fn weight_H(plan: &Plan, object: &ObjectModel) -> Vec3 {
-    Vec3::from(plan.scenario.problem.gravity) * object.mass
-}
-
-struct Walk<'w> {
-    plan: &'w Plan,
-    hand: &'w Chains,
-    object: &'w ObjectModel,
-    scene: &'w Scene,
-    legs: &'w [Leg<'w>],
-}
-
-/// The checks that look at where everything is at each sample.
-struct Sampled<'w> {
-    contacts: ContactChecks<'w>,
-    clearance: ClearanceCheck<'w>,
-    lift: LiftCheck<'w>,
-    stability: StabilityCheck,
-    /// In its place where contacts have cones of their own.
-    cones: Option<ConesCheck>,
-    /// In its place where the plan claims that joints' efforts hold the object; `None` within where the claim
-    /// has no meaning.
-    holding: Option<Option<HoldingCheck>>,
-    holds: Option<HoldsCheck>,
-}
-
-impl Walk<'_> {
-    fn verdict(&self) -> Verdict {
-        let limits = &self.plan.scenario.problem.limits;
-        let (tolerances, resolution) = (&limits.tolerances, &limits.resolution);
-        // The lowest height that the scenario lets a finger lift to.
-        let lift = resolution.retreat.into_iter().fold(resolution.lift, f64::min);
-        let mut sampled = Sampled {
-            contacts: ContactChecks::new(self.hand, self.scene, tolerances, self.plan.claims.transfer_law),
-            clearance: ClearanceCheck::new(self.hand, self.scene, tolerances.clearance),
-            lift: LiftCheck::new(self.hand, self.scene, tolerances, lift),
-            stability: StabilityCheck::new(&self.plan.claims, weight_H(self.plan, self.object)),
-            cones: ConesCheck::new(&self.plan.claims),
-            holding: self.holding(),
-            holds: self.holds(),
-        };
-        let mut frames = vec![Frames::new(self.hand); SAMPLES + 1];
-        let mut touches = [[None; MAX_FINGERS]; SAMPLES + 1];
-        for leg in self.legs {
-            self.segment(leg, &mut sampled, &mut frames, &mut touches);
-        }
-        self.gather(sampled, tolerances)
-    }
-
-    fn holding(&self) -> Option<Option<HoldingCheck>> {
-        let claims = &self.plan.claims;
-        let Criterion::Holding(load) = &claims.criterion else { return None };
-        // Without an elliptic cone nothing can be checked, and the check of closure says so.
-        claims.contact.cone?;
-        Some(HoldingCheck::new(claims, load, weight_H(self.plan, self.object)))
-    }
-
-    fn holds(&self) -> Option<HoldsCheck> {
-        let mut states = self.plan.segments.iter().flat_map(|segment| &segment.states);
-        let has_forces = states.any(|state| state.forces.is_some());
-        HoldsCheck::new(&self.plan.claims, weight_H(self.plan, self.object), self.object.mass, has_forces)
-    }
-
-    /// The segment's first state.
-    fn begin(
-        &self,
-        leg: &Leg<'_>,
-        sampled: &mut Sampled<'_>,
-        frames: &mut Frames,
-        touches: &mut [Option<Touch>; MAX_FINGERS],
-    ) {
-        sampled.stability.start();
-        sampled.holding.iter_mut().flatten().for_each(HoldingCheck::start);
-        sampled.lift.start();
-        frames.place(self.hand, leg, 0, 0.0);
-        *touches = sampled.contacts.sample(leg, 0, 0, frames);
-        sampled.stability.sample(leg, 0, 0, &frames.X_HO.rotation, touches);
-        if let Some(cones) = &mut sampled.cones {
-            cones.state(leg, 0, touches);
-        }
-        if let Some(Some(holding)) = &mut sampled.holding {
-            holding.sample((leg, 0, 0), self.hand, frames, touches);
-        }
-        if let Some(holds) = &mut sampled.holds {
-            holds.state(leg, 0, self.hand, frames);
-        }
-        sampled.clearance.start(leg, frames);
-        if let Some(finger) = leg.moving {
-            sampled.lift.sample(finger, 0, 0, frames);
-        }
-    }
-
-    fn segment(
-        &self,
-        leg: &Leg<'_>,
-        sampled: &mut Sampled<'_>,
-        frames: &mut [Frames],
-        touches: &mut [[Option<Touch>; MAX_FINGERS]; SAMPLES + 1],
-    ) {
-        self.begin(leg, sampled, &mut frames[SAMPLES], &mut touches[SAMPLES]);
-        for state in 0..leg.states.len() - 1 {
-            frames.swap(0, SAMPLES);
-            touches.swap(0, SAMPLES);
-            for sample in 1..=SAMPLES {
-                frames[sample].place(self.hand, leg, state, sample as f64 / SAMPLES as f64);
-                // In a regrasp all that holds rests: its contacts are looked at where the plan states them.
-                let stated = sample == SAMPLES;
-                if leg.moving.is_none() || stated {
-                    touches[sample] = sampled.contacts.sample(leg, state, sample, &frames[sample]);
-                    let R_HO = &frames[sample].X_HO.rotation;
-                    sampled.stability.sample(leg, state, sample, R_HO, &touches[sample]);
-                    if let Some(cones) = sampled.cones.as_mut().filter(|_| stated) {
-                        cones.state(leg, state + 1, &touches[sample]);
-                    }
-                    if let Some(Some(holding)) = &mut sampled.holding {
-                        holding.sample((leg, state, sample), self.hand, &frames[sample], &touches[sample]);
-                    }
-                } else {
-                    touches[sample] = touches[0];
-                }
-                if let Some(finger) = leg.moving {
-                    sampled.lift.sample(finger, state, sample, &frames[sample]);
-                }
-            }
-            if let Some(holds) = &mut sampled.holds {
-                holds.state(leg, state + 1, self.hand, &frames[SAMPLES]);
-            }
-            sampled.clearance.step(leg, state, frames, touches);
-        }
-        if let Some(finger) = leg.moving {
-            let lifted = sampled.lift.finish(leg, finger, &mut sampled.clearance);
-            sampled.contacts.moved(leg, finger, lifted, &frames[SAMPLES]);
-        }
-    }
-
-    fn gather(&self, mut sampled: Sampled<'_>, tolerances: &Tolerances) -> Verdict {
-        let (closure_residual, slip) = sampled.contacts.extremes();
-        let certificate = PlanCertificate {
-            closure_margin: match &sampled.cones {
-                Some(cones) => cones.extreme(),
-                None => sampled.stability.extreme(),
-            },
-            clearance: sampled.clearance.extreme(),
-            slip,
-            closure_residual,
-            holds: sampled.holds.as_ref().and_then(HoldsCheck::holds),
-        };
-        let mut checks = vec![Gauge::faults("form").check()];
-        checks.push(motion_checks::quaternions(self.legs));
-        checks.push(motion_checks::times(self.legs));
-        checks.extend(rates::rates(self.hand, self.legs));
-        checks.extend(controller::controller(self.hand, self.scene, self.legs, tolerances.closure));
-        checks.push(motion_checks::joint_limits(self.hand, self.legs));
-        checks.extend(motion_checks::driven_joints(self.hand, self.legs));
-        checks.push(motion_checks::continuity(self.legs));
-        checks.push(motion_checks::rest(self.hand, self.legs));
-        checks.push(motion_checks::contacts(self.hand, self.legs));
-        checks.extend(sampled.contacts.checks());
-        checks.extend(sampled.lift.checks());
-        checks.push(sampled.clearance.check());
-        checks.push(match sampled.holding {
-            None => sampled.cones.map_or_else(|| sampled.stability.check(), ConesCheck::check),
-            Some(None) => HoldingCheck::no_meaning(),
-            Some(Some(holding)) => holding.check_made(),
-        });
-        checks.extend(sampled.holds.map(HoldsCheck::check));
-        checks.push(claims::claims(self.plan, self.object));
-        checks.push(ends::start(self.plan, self.legs, tolerances));
-        checks.extend(ends::goals(self.plan, self.legs, tolerances));
-        Verdict::new(checks, Some(certificate))
-    }
+fn gather(look: &Look<'_>, mut seen: Seen<'_>, slip: SlipCheck) -> Verdict {
+    let Look { plan, hand, object, legs, .. } = *look;
+    let tolerances = &plan.scenario.problem.limits.tolerances;
+    let certificate = PlanCertificate {
+        closure_margin: match &seen.cones {
+            Some(cones) => cones.extreme(),
+            None => seen.stability.extreme(),
+        },
+        clearance: seen.clearance.extreme(),
+        slip: slip.extreme(),
+        closure_residual: seen.contacts.extreme(),
+        holds: seen.holds.as_ref().and_then(HoldsCheck::holds),
+    };
+    let mut checks = vec![Gauge::faults("form").check()];
+    checks.push(motion_checks::quaternions(legs));
+    checks.push(motion_checks::times(legs));
+    checks.extend(rates::rates(hand, legs));
+    checks.extend(seen.controller.check());
+    checks.push(motion_checks::joint_limits(hand, legs));
+    checks.extend(motion_checks::driven_joints(hand, legs));
+    checks.push(motion_checks::continuity(legs));
+    checks.push(motion_checks::rest(hand, legs));
+    checks.push(motion_checks::contacts(hand, legs));
+    checks.extend(seen.contacts.checks(slip));
+    checks.extend(seen.lift.checks());
+    checks.push(seen.clearance.check());
+    checks.push(match seen.holding {
+        None => seen.cones.map_or_else(|| seen.stability.check(), ConesCheck::check),
+        Some(None) => HoldingCheck::no_meaning(),
+        Some(Some(holding)) => holding.check_made(),
+    });
+    checks.extend(seen.holds.map(HoldsCheck::check));
+    checks.push(claims::claims(plan, object));
+    checks.push(ends::start(plan, legs, tolerances));
+    checks.extend(ends::goals(plan, legs, tolerances));
+    Verdict::new(checks, Some(certificate))
 }

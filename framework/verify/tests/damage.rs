@@ -284,7 +284,7 @@ fn soft_fingers_have_no_torsion_in_transfers() {
     let soft = |p: &mut Plan| {
         p.claims.contact = ContactClaim {
             model: "contact-model/soft-finger".into(),
-            cone: Some(ConeClaim { mu: 0.8, gamma: 0.002 }),
+            cone: Some(ConeClaim::round(0.8, 0.002)),
             cones: vec![],
         };
         let settings = serde_json::json!({"gamma": 0.002});

@@ -41,14 +41,15 @@ pub fn coarse_hull(points: &[Vec3], tolerance: f64) -> Option<(Mesh, f64)> {
         let planes = planes(&coarse);
         let mut out: Vec<(f64, Vec3)> = all.iter().map(|p| (beyond(&planes, p), *p)).collect();
         out.sort_by(|a, b| b.0.total_cmp(&a.0));
-        if out[0].0 <= tolerance - GRID || chosen.len() >= MANY {
+        let allowed = tolerance - GRID;
+        if out[0].0 <= allowed || chosen.len() >= MANY {
             // Of the points as they were given, not as they were rounded.
             let worst = points.iter().map(|p| beyond(&planes, p)).fold(0.0, f64::max);
             return Some((coarse, worst));
         }
         // A few at a time, no two of them close together: one corner takes care of what lies about it.
         let mut added: Vec<Vec3> = Vec::new();
-        for (depth, p) in out.into_iter().take_while(|(depth, _)| *depth > tolerance) {
+        for (depth, p) in out.into_iter().take_while(|(depth, _)| *depth > allowed) {
             let apart = 8.0 * depth.max(tolerance);
             if added.iter().all(|other| (other - p).norm() > apart) {
                 added.push(p);
@@ -142,6 +143,9 @@ mod tests {
         let planes = planes(&coarse);
         let worst = ball.iter().map(|p| beyond(&planes, p)).fold(0.0, f64::max);
         assert_eq!(worst, error);
+        // Where the farthest point stands out by just the tolerance, one more corner ends it.
+        let (_, finer) = coarse_hull(&ball, error).unwrap();
+        assert!(finer <= error, "{finer}");
         // Where that takes too many corners, the error that is left is told.
         let (coarse, error) = coarse_hull(&ball, 1e-4).unwrap();
         assert!(error > 1e-4 && error < 2.5e-4 && coarse.vertices().len() >= MANY, "{error}");

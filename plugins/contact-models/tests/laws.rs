@@ -12,7 +12,7 @@ fn models() -> [Box<dyn ContactModel>; 3] {
 fn radii(cone: Cone<'_>) -> (f64, f64) {
     match cone {
         Cone::Elliptic { mu, gamma } => (mu, gamma),
-        Cone::Polyhedral(_) => panic!("the built-in contact models are elliptic"),
+        Cone::Grained(_) | Cone::Polyhedral(_) => panic!("the built-in contact models are elliptic"),
     }
 }
 

@@ -17,8 +17,8 @@ const ROOM: f64 = 1e-9;
 /// Pivots of the grasp map's square at or below this mean that its rank is not surely 6.
 const FLAT: f64 = 1e-12;
 
-/// One contact's force, the largest allowed normal force as unit: f_n = normal, f_t = μ tangential, m = γ
-/// spin.
+/// One contact's force, the largest allowed normal force as unit: f_n = normal, f_t = μ tangential
+/// (stretched by a grain), m = γ spin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Force {
     pub normal: f64,
@@ -30,7 +30,7 @@ pub(crate) struct Force {
 impl Force {
     const ZERO: Self = Self { normal: 0.0, tangential: Vec3::new(0.0, 0.0, 0.0), spin: 0.0 };
     /// Where a search starts: midway between none and the largest.
-    const START: Self = Self { normal: 0.5, tangential: Vec3::new(0.0, 0.0, 0.0), spin: 0.0 };
+    pub const START: Self = Self { normal: 0.5, tangential: Vec3::new(0.0, 0.0, 0.0), spin: 0.0 };
 
     /// f_n² - |(f_t/μ, m/γ)|².
     #[inline]
@@ -45,7 +45,7 @@ impl Force {
     }
 
     #[inline]
-    fn dot(&self, other: &Self) -> f64 {
+    pub fn dot(&self, other: &Self) -> f64 {
         self.normal * other.normal + self.tangential.dot(&other.tangential) + self.spin * other.spin
     }
 
@@ -68,16 +68,16 @@ impl Force {
     /// G of one contact: its wrench.
     #[inline]
     pub fn wrench(&self, contact: &ScaledContact) -> Twist {
-        let f = contact.n * self.normal + self.tangential * contact.mu;
+        let f = contact.n * self.normal + contact.stretched(&self.tangential);
         Twist { a: f, b: contact.r.cross(&f) + contact.n * (contact.gamma * self.spin) }
     }
 
     /// Gᵀ of one contact: what it sees of a twist.
     #[inline]
-    fn seen(contact: &ScaledContact, w: &Twist) -> Self {
+    pub fn seen(contact: &ScaledContact, w: &Twist) -> Self {
         let v = w.a + w.b.cross(&contact.r);
         let normal = v.dot(&contact.n);
-        let tangential = (v - contact.n * normal) * contact.mu;
+        let tangential = contact.stretched(&(v - contact.n * normal));
         Self { normal, tangential, spin: contact.gamma * w.b.dot(&contact.n) }
     }
 }
@@ -87,7 +87,7 @@ pub(crate) type Forces = [Force; MAX_FINGERS];
 
 /// The barrier -log(f_n² - |u|²) - log(1 - f_n) of one contact at a force.
 #[derive(Clone, Copy)]
-struct Barrier {
+pub(crate) struct Barrier {
     at: Force,
     q: f64,
     /// (f_n² + |u|²)/2 and f_n u: what the inverse Hessian of the first term makes of the unit normal force.
@@ -98,7 +98,8 @@ struct Barrier {
 
 impl Barrier {
     #[inline]
-    fn new(at: &Force) -> Self {
+    /// At a force inside.
+    pub fn new(at: &Force) -> Self {
         let q = at.q();
         let lifted = Force {
             normal: at.normal * at.normal - 0.5 * q,
@@ -110,7 +111,7 @@ impl Barrier {
     }
 
     #[inline]
-    fn gradient(&self) -> Force {
+    pub fn gradient(&self) -> Force {
         let scale = 2.0 / self.q;
         Force {
             normal: 1.0 / (1.0 - self.at.normal) - scale * self.at.normal,
@@ -122,7 +123,7 @@ impl Barrier {
     /// The inverse Hessian times `c`: x xᵀ - (q/2) diag(1, -1, -1, -1), less the second term by Sherman and
     /// Morrison.
     #[inline]
-    fn inverse(&self, c: &Force) -> Force {
+    pub fn inverse(&self, c: &Force) -> Force {
         let (along, half) = (self.at.dot(c), 0.5 * self.q);
         let mirrored =
             Force { normal: -half * c.normal, tangential: c.tangential * half, spin: half * c.spin };
@@ -131,7 +132,7 @@ impl Barrier {
 
     /// Adds G H⁻¹ Gᵀ of the contact.
     #[inline]
-    fn add_to(&self, S: &mut Symmetric6, contact: &ScaledContact) {
+    pub fn add_to(&self, S: &mut Symmetric6, contact: &ScaledContact) {
         let (mu2, gamma2) = (contact.mu * contact.mu, contact.gamma * contact.gamma);
         let half = 0.5 * self.q;
         let normal = Twist { a: contact.n, b: contact.r.cross(&contact.n) };
@@ -139,6 +140,9 @@ impl Barrier {
         S.add_outer(-self.weight, &self.lifted.wrench(contact).to_array());
         S.add_outer(-half * (1.0 + mu2), &normal.to_array());
         S.add_velocity(half * mu2, &contact.r);
+        if contact.grained {
+            S.add_outer(half, &contact.grain_wrench());
+        }
         if gamma2 > 0.0 {
             S.add_spin(half * gamma2, &contact.n);
         }
@@ -146,7 +150,7 @@ impl Barrier {
 
     /// The largest step along `d` that stays inside.
     #[inline]
-    fn reach(&self, d: &Force) -> f64 {
+    pub fn reach(&self, d: &Force) -> f64 {
         let bound = if d.normal > 0.0 { (1.0 - self.at.normal) / d.normal } else { f64::INFINITY };
         bound.min(first_root(self.q, 2.0 * self.at.product(d), d.q()))
     }

@@ -60,13 +60,82 @@ pub(crate) struct ScaledContact {
     pub r: Vec3,
     /// *Inward* unit normal.
     pub n: Vec3,
-    /// Coefficient of friction (no unit).
+    /// Coefficient of friction (no unit); with a grain the smaller one.
     pub mu: f64,
     /// Torsional radius over the length (no unit).
     pub gamma: f64,
+    /// Whether friction is not the same all round.
+    pub grained: bool,
+    /// What a grain adds (no unit; in O, orthogonal to the normal): the most power on a tangential velocity v
+    /// is √(μ² |v|² + (g·v)²). Zero without one.
+    pub g: Vec3,
 }
 
 impl ScaledContact {
+    /// Fills a place.
+    const NOTHING: Self = Self {
+        r: Vec3::new(0.0, 0.0, 0.0),
+        n: Vec3::new(0.0, 0.0, 0.0),
+        mu: 0.0,
+        gamma: 0.0,
+        grained: false,
+        g: Vec3::new(0.0, 0.0, 0.0),
+    };
+
+    /// The contact with its cone, neither centred nor scaled; a polyhedral one is put down as frictionless.
+    fn of(contact: &GraspContact<'_>) -> Self {
+        let round = Self { r: contact.p_OC, n: -contact.n_O, ..Self::NOTHING };
+        match &contact.cone {
+            Cone::Elliptic { mu, gamma } => Self { mu: *mu, gamma: *gamma, ..round },
+            Cone::Grained(grain) => {
+                let (mu, g) = grain.spread(&contact.n_O);
+                Self { mu, gamma: grain.gamma, grained: g != Vec3::zeros(), g, ..round }
+            }
+            Cone::Polyhedral(_) => round,
+        }
+    }
+
+    /// μ² a·b, and what the grain adds: the form whose root is a tangential velocity's most power.
+    #[inline]
+    pub fn form(&self, a: &Vec3, b: &Vec3) -> f64 {
+        let round = self.mu * self.mu * a.dot(b);
+        if self.grained { round + self.g.dot(a) * self.g.dot(b) } else { round }
+    }
+
+    /// The tangential force whose power is [`Self::form`]: μ² v, and what the grain adds.
+    #[inline]
+    pub fn squared(&self, v: &Vec3) -> Vec3 {
+        let round = v * (self.mu * self.mu);
+        if self.grained { round + self.g * self.g.dot(v) } else { round }
+    }
+
+    /// The symmetric root of that map: what makes the friction's ellipse of the unit circle.
+    #[inline]
+    pub fn stretched(&self, v: &Vec3) -> Vec3 {
+        let round = v * self.mu;
+        if !self.grained {
+            return round;
+        }
+        // μ + |g|²/(μ + μ') = μ', the larger coefficient, along g.
+        let more = self.mu.hypot(self.g.norm());
+        round + self.g * (self.g.dot(v) / (self.mu + more))
+    }
+
+    /// The wrench of the force g here, of which what the grain adds is made.
+    #[inline]
+    pub fn grain_wrench(&self) -> [f64; 6] {
+        Twist { a: self.g, b: self.r.cross(&self.g) }.to_array()
+    }
+
+    /// The two tangents of a grained cone with their coefficients, the larger one first.
+    pub fn axes(&self) -> Option<[(Vec3, f64); 2]> {
+        self.grained.then(|| {
+            let size = self.g.norm();
+            let along = self.g / size;
+            [(along, self.mu.hypot(size)), (self.n.cross(&along), self.mu)]
+        })
+    }
+
     /// The largest power of the cone's slice f_n = 1 on the twist `w`: h(w) = v_n + sqrt(μ²|v_t|² + γ²β²).
     #[inline]
     pub fn support(&self, w: &Twist) -> f64 {
@@ -74,7 +143,7 @@ impl ScaledContact {
         let v_n = v.dot(&self.n);
         let v_t = v - self.n * v_n;
         let beta = w.b.dot(&self.n);
-        v_n + (self.mu * self.mu * v_t.norm_squared() + (self.gamma * beta).powi(2)).sqrt()
+        v_n + (self.form(&v_t, &v_t) + (self.gamma * beta).powi(2)).sqrt()
     }
 }
 
@@ -84,7 +153,7 @@ pub(crate) fn three_of(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Option
     let mut left = grasp.contacts().iter().filter(|contact| Some(contact.finger) != lifted);
     let mut next = || match left.next() {
         Some(GraspContact { p_OC, n_O, cone: Cone::Elliptic { mu, gamma }, .. }) => {
-            Some(ScaledContact { r: *p_OC, n: -n_O, mu: *mu, gamma: *gamma })
+            Some(ScaledContact { r: *p_OC, n: -n_O, mu: *mu, gamma: *gamma, ..ScaledContact::NOTHING })
         }
         _ => None,
     };
@@ -92,9 +161,9 @@ pub(crate) fn three_of(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Option
     left.next().is_none().then_some(three)
 }
 
-/// Whether all contacts of `grasp` except those of `lifted` have round cones.
+/// Whether all contacts of `grasp` except those of `lifted` have elliptic cones.
 pub(crate) fn is_round(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> bool {
-    let round = |contact: &GraspContact<'_>| matches!(contact.cone, Cone::Elliptic { .. });
+    let round = |contact: &GraspContact<'_>| !matches!(contact.cone, Cone::Polyhedral(_));
     grasp.contacts().iter().all(|contact| Some(contact.finger) == lifted || round(contact))
 }
 
@@ -123,9 +192,12 @@ impl ScaledGrasp {
         lifted: Option<FingerIndex>,
         plugin: &'static str,
     ) -> Result<Self, CallError> {
-        let nothing = ScaledContact { r: Vec3::zeros(), n: Vec3::zeros(), mu: 0.0, gamma: 0.0 };
-        let mut scaled =
-            Self { contacts: [nothing; MAX_FINGERS], count: 0, center_O: Vec3::zeros(), length: 1.0 };
+        let mut scaled = Self {
+            contacts: [ScaledContact::NOTHING; MAX_FINGERS],
+            count: 0,
+            center_O: Vec3::zeros(),
+            length: 1.0,
+        };
         for contact in grasp.contacts().iter().filter(|contact| Some(contact.finger) != lifted) {
             scaled.contacts[scaled.count] = unscaled(contact, plugin)?;
             scaled.count += 1;
@@ -137,15 +209,14 @@ impl ScaledGrasp {
     /// The contacts of `grasp` except those of `lifted`, whatever their cones: a polyhedral one is put down
     /// as frictionless.
     pub fn gather_points(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Self {
-        let nothing = ScaledContact { r: Vec3::zeros(), n: Vec3::zeros(), mu: 0.0, gamma: 0.0 };
-        let mut scaled =
-            Self { contacts: [nothing; MAX_FINGERS], count: 0, center_O: Vec3::zeros(), length: 1.0 };
+        let mut scaled = Self {
+            contacts: [ScaledContact::NOTHING; MAX_FINGERS],
+            count: 0,
+            center_O: Vec3::zeros(),
+            length: 1.0,
+        };
         for contact in grasp.contacts().iter().filter(|contact| Some(contact.finger) != lifted) {
-            let (mu, gamma) = match &contact.cone {
-                Cone::Elliptic { mu, gamma } => (*mu, *gamma),
-                Cone::Polyhedral(_) => (0.0, 0.0),
-            };
-            scaled.contacts[scaled.count] = ScaledContact { r: contact.p_OC, n: -contact.n_O, mu, gamma };
+            scaled.contacts[scaled.count] = ScaledContact::of(contact);
             scaled.count += 1;
         }
         scaled.normalise();
@@ -168,7 +239,8 @@ impl ScaledGrasp {
     /// How many independent force components the contacts have in all; closure needs at least seven.
     pub fn components(&self) -> usize {
         let of = |contact: &ScaledContact| {
-            1 + 2 * usize::from(contact.mu > 0.0) + usize::from(contact.gamma > 0.0)
+            let tangential = if contact.mu > 0.0 { 2 } else { usize::from(contact.grained) };
+            1 + tangential + usize::from(contact.gamma > 0.0)
         };
         self.contacts().iter().map(of).sum()
     }
@@ -193,33 +265,16 @@ impl ScaledGrasp {
     }
 }
 
-/// The id of the test that weighs a load.
-pub(crate) const EQUILIBRIUM: &str = "stability-test/equilibrium";
-
-/// What to use where cones are polyhedral; the tests that take them are no substitute for `equilibrium`,
-/// which alone weighs a load.
-fn instead(plugin: &str) -> &'static str {
-    if plugin == EQUILIBRIUM {
-        "use an elliptic contact model, such as `contact-model/pcwf` or `contact-model/soft-finger`; \
-            `stability-test/force-closure` \
-         takes polyhedral cones, but asks for closure, whatever the load"
-    } else {
-        "use an elliptic contact model, or `stability-test/force-closure`, which takes polyhedral cones as \
-            they are"
-    }
-}
-
 fn unscaled(contact: &GraspContact<'_>, plugin: &'static str) -> Result<ScaledContact, CallError> {
     match &contact.cone {
-        Cone::Elliptic { mu, gamma } => {
-            Ok(ScaledContact { r: contact.p_OC, n: -contact.n_O, mu: *mu, gamma: *gamma })
-        }
+        Cone::Elliptic { .. } | Cone::Grained(_) => Ok(ScaledContact::of(contact)),
         Cone::Polyhedral(_) => Err(CallError::Unsupported {
             plugin: plugin.to_owned(),
-            reason: format!(
-                "it decides elliptic cones exactly and takes no polyhedral ones; {}",
-                instead(plugin)
-            ),
+            reason:
+                "it decides elliptic cones exactly and takes no polyhedral ones; use an elliptic contact \
+                model, or `stability-test/force-closure` or `stability-test/equilibrium`, which take \
+                polyhedral cones as they are"
+                    .into(),
         }),
     }
 }
@@ -231,7 +286,8 @@ mod tests {
     #[test]
     fn the_support_is_the_maximum_over_the_slice() {
         let n = Vec3::new(0.6, 0.0, 0.8);
-        let contact = ScaledContact { r: Vec3::new(0.3, -0.7, 0.5), n, mu: 0.6, gamma: 0.2 };
+        let contact =
+            ScaledContact { r: Vec3::new(0.3, -0.7, 0.5), n, mu: 0.6, gamma: 0.2, ..ScaledContact::NOTHING };
         let (t1, t2) = (Vec3::new(0.8, 0.0, -0.6), Vec3::y());
         let w = Twist { a: Vec3::new(0.3, -1.0, 0.4), b: Vec3::new(-0.5, 0.2, 0.9) };
         let mut best = f64::NEG_INFINITY;
@@ -249,7 +305,7 @@ mod tests {
 
     #[test]
     fn components_count_what_each_contact_can_resist() {
-        let contact = |mu, gamma| ScaledContact { r: Vec3::zeros(), n: Vec3::z(), mu, gamma };
+        let contact = |mu, gamma| ScaledContact { n: Vec3::z(), mu, gamma, ..ScaledContact::NOTHING };
         let contacts = [contact(0.0, 0.0), contact(0.5, 0.0), contact(0.5, 0.1)];
         let mut all = [contact(0.0, 0.0); MAX_FINGERS];
         all[..3].copy_from_slice(&contacts);

@@ -1,7 +1,9 @@
 //! `stability-test/equilibrium`: bounded contact forces hold the object against gravity and disturbances.
 
 use crate::balance::{Balance, Balanced, Forces};
-use crate::contacts::{ScaledGrasp, Twist};
+use crate::contacts::{ScaledGrasp, Twist, is_round};
+use crate::edges::{EdgeBalance, Found};
+use crate::wrenches::WrenchSet;
 use regrasp_api::{
     Assessment, Build, BuildError, CallError, Certificate, Context, Criterion, Entry, FingerIndex, Grasp,
     Hint, Load, Settings, SettingsError, Slot, Stability, StabilityTest, Vec3, check_settings,
@@ -9,7 +11,7 @@ use regrasp_api::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub(crate) const ID: &str = crate::contacts::EQUILIBRIUM;
+pub(crate) const ID: &str = "stability-test/equilibrium";
 /// How far apart the bounds of a reported margin are, relative to the factor.
 const MARGIN_GAP: f64 = 0.005;
 /// The largest factor of the disturbances that a margin tells of.
@@ -48,12 +50,13 @@ impl Settings for EquilibriumSettings {}
 /// For the weight alone and for the weight with each of the 24 wrenches that [`Load`] describes (they enclose
 /// all forces up to `disturbance_force` at the centre of mass, all torques up to `disturbance_torque`, and
 /// mixtures), some forces must balance it: then, cones being convex, everything between is balanced too.
-/// Elliptic cones are taken exactly. Forces are found by Newton's method to the analytic centre of those that
-/// balance the weight, an interior-point form of the grasp-force problem of Han, Trinkle, Li, "Grasp analysis
-/// as linear matrix inequality problems", T-RA 2000, and Boyd & Wegbreit, "Fast computation of optimal
-/// contact forces", T-RO 2007. The centre's linear response is tried for all 24 first; where it leaves a
-/// cone, Newton goes on from there. A yes is proved by forces strictly inside, a no by a twist on which all
-/// contacts together have too little power; neither gives [`Stability::Undecided`].
+/// Elliptic cones are taken exactly, with a grain too, and so are polyhedral ones. Forces are found by
+/// Newton's method to the analytic centre of those that balance the weight, an interior-point form of the
+/// grasp-force problem of Han, Trinkle, Li, "Grasp analysis as linear matrix inequality problems", T-RA
+/// 2000, and Boyd & Wegbreit, "Fast computation of optimal contact forces", T-RO 2007. The centre's
+/// linear response is tried for all 24 first; where it leaves a cone, Newton goes on from there. A yes is
+/// proved by forces strictly inside, a no by a twist on which all contacts together have too little
+/// power; neither gives [`Stability::Undecided`].
 ///
 /// Unlike closure the verdict depends on the object's orientation (gravity in its frame), mass and centre of
 /// mass: a grasp, and which of its fingers may be lifted, may be stable in one pose and not in another, and a
@@ -99,6 +102,35 @@ impl Equilibrium {
         Loads { weight: at_center_of_mass(g_O * (-self.mass * unit)), disturbances }
     }
 
+    /// The verdict on `grasp` without `lifted`, the disturbances times `factor`.
+    fn judge(
+        &self,
+        grasp: &Grasp<'_>,
+        lifted: Option<FingerIndex>,
+        factor: f64,
+    ) -> Result<Stability, CallError> {
+        if is_round(grasp, lifted) {
+            return Ok(self.decide(&ScaledGrasp::gather(grasp, lifted, ID)?, &grasp.g_O, factor));
+        }
+        Ok(self.decide_edges(&WrenchSet::gather(grasp, lifted, None), &grasp.g_O, factor))
+    }
+
+    /// The verdict where some cones are polyhedra.
+    fn decide_edges(&self, set: &WrenchSet<'_>, g_O: &Vec3, factor: f64) -> Stability {
+        let Some(balance) = EdgeBalance::new(set) else { return Stability::Unstable };
+        let loads = self.loads(&set.grasp, g_O);
+        let verdict = |found: &Found| match found {
+            Found::Yes(_) => Stability::Stable,
+            Found::No => Stability::Unstable,
+            Found::Unknown => Stability::Undecided,
+        };
+        let found = balance.centre(&loads.weight);
+        let Found::Yes(parts) = &found else { return verdict(&found) };
+        let with = |change: &Twist| verdict(&balance.follow(parts, &loads.weight.plus(factor, change)));
+        let lost = loads.disturbances.iter().map(with).find(|verdict| !verdict.is_stable());
+        lost.unwrap_or(Stability::Stable)
+    }
+
     fn decide(&self, scaled: &ScaledGrasp, g_O: &Vec3, factor: f64) -> Stability {
         if scaled.components() < 6 {
             return Stability::Unstable;
@@ -112,10 +144,9 @@ impl Equilibrium {
         }
     }
 
-    /// The factor by which the disturbances may grow: bounds, the upper one infinite where it is above
-    /// [`MOST`].
-    fn factor(&self, scaled: &ScaledGrasp, g_O: &Vec3) -> (f64, f64) {
-        let holds = |factor: f64| self.decide(scaled, g_O, factor).is_stable();
+    /// The factor by which the disturbances may grow, where `holds` answers for one: bounds, the upper
+    /// one infinite where it is above [`MOST`].
+    fn factor(&self, holds: impl Fn(f64) -> bool) -> (f64, f64) {
         let (mut low, mut high) = (0.0, 1.0);
         while holds(high) {
             (low, high) = (high, 2.0 * high);
@@ -130,7 +161,24 @@ impl Equilibrium {
         (low, high)
     }
 
-    fn certify(&self, scaled: &ScaledGrasp, g_O: &Vec3) -> Certificate {
+    fn certify(&self, grasp: &Grasp<'_>) -> Result<Certificate, CallError> {
+        if is_round(grasp, None) {
+            return Ok(self.certify_round(&ScaledGrasp::gather(grasp, None, ID)?, &grasp.g_O));
+        }
+        let set = WrenchSet::gather(grasp, None, None);
+        let Some(balance) = EdgeBalance::new(&set) else { return Ok(Certificate::None) };
+        let Found::Yes(parts) = balance.centre(&self.loads(&set.grasp, &grasp.g_O).weight) else {
+            return Ok(Certificate::None);
+        };
+        let unit = self.settings.max_normal_force;
+        let forces = || parts.iter().enumerate().map(|(i, part)| balance.force(i, part));
+        Ok(Certificate::InternalForce {
+            forces_O: forces().map(|force| force.f * unit).collect(),
+            torsions: forces().map(|force| force.m * set.grasp.length * unit).collect(),
+        })
+    }
+
+    fn certify_round(&self, scaled: &ScaledGrasp, g_O: &Vec3) -> Certificate {
         let Some(balance) = Balance::new(scaled) else { return Certificate::None };
         match balance.centre(&self.loads(scaled, g_O).weight) {
             Balanced::Yes(forces) => self.in_newtons(scaled, &forces),
@@ -189,7 +237,7 @@ impl StabilityTest for Equilibrium {
         context: &mut Context<'_>,
     ) -> Result<Stability, CallError> {
         context.count_call(Slot::StabilityTest);
-        Ok(self.decide(&ScaledGrasp::gather(grasp, None, ID)?, &grasp.g_O, 1.0))
+        self.judge(grasp, None, 1.0)
     }
 
     fn assess(
@@ -199,11 +247,11 @@ impl StabilityTest for Equilibrium {
         _center_O: Option<Vec3>,
         _context: &mut Context<'_>,
     ) -> Result<Assessment, CallError> {
-        let scaled = ScaledGrasp::gather(grasp, None, ID)?;
-        let stability = self.decide(&scaled, &grasp.g_O, 1.0);
-        let (low, high) = self.factor(&scaled, &grasp.g_O);
+        let stability = self.judge(grasp, None, 1.0)?;
+        let holds = |factor: f64| self.judge(grasp, None, factor).is_ok_and(|found| found.is_stable());
+        let (low, high) = self.factor(holds);
         let (margin_lower, margin_upper, certificate) = if stability.is_stable() {
-            ((low - 1.0).max(0.0), high - 1.0, self.certify(&scaled, &grasp.g_O))
+            ((low - 1.0).max(0.0), high - 1.0, self.certify(grasp)?)
         } else {
             ((low - 1.0).min(0.0), (high - 1.0).max(low - 1.0), Certificate::None)
         };
@@ -225,8 +273,7 @@ impl StabilityTest for Equilibrium {
         context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
         context.count_call(Slot::StabilityTest);
-        let rest = ScaledGrasp::gather(grasp, Some(finger), ID)?;
-        Ok(self.decide(&rest, &grasp.g_O, 1.0).is_stable())
+        Ok(self.judge(grasp, Some(finger), 1.0)?.is_stable())
     }
 }
 

@@ -38,8 +38,8 @@ impl Default for ForceClosureSettings {
 
 impl Settings for ForceClosureSettings {}
 
-/// Force closure, decided exactly for point contacts with and without friction, for soft fingers, with no
-/// linearised cone, and for polyhedral cones.
+/// Force closure, decided exactly for point contacts with and without friction, with a grain or without, for
+/// soft fingers, with no linearised cone, and for polyhedral cones.
 ///
 /// A grasp is force closure where internal forces exist strictly inside every cone and the grasp map has rank
 /// 6. That is so exactly where the polar body Ω = {w : h_i(-w) ≤ 1} of the contacts' wrench sets is bounded,
@@ -92,7 +92,8 @@ impl ForceClosure {
 
     /// The same for contacts that were gathered already.
     pub(crate) fn decide(&self, grasp: &ScaledGrasp, hint: &mut Hint) -> Stability {
-        if let Ok(contacts) = grasp.contacts().try_into()
+        if grasp.contacts().iter().all(|contact| !contact.grained)
+            && let Ok(contacts) = grasp.contacts().try_into()
             && let Some(closed) = three_points(contacts)
         {
             return if closed { Stability::Stable } else { Stability::Unstable };

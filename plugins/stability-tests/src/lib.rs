@@ -4,6 +4,7 @@
 mod balance;
 mod closure;
 mod contacts;
+mod edges;
 mod equilibrium;
 mod force_closure;
 mod holding;

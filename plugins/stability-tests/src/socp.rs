@@ -133,7 +133,20 @@ struct Solution {
 /// How many components a contact's force has: normal, two tangential if μ > 0, torsional if γ > 0, the last
 /// three over μ and γ.
 fn components(contact: &ScaledContact) -> usize {
-    1 + 2 * usize::from(contact.mu > 0.0) + usize::from(contact.gamma > 0.0)
+    1 + 2 * usize::from(has_friction(contact)) + usize::from(contact.gamma > 0.0)
+}
+
+fn has_friction(contact: &ScaledContact) -> bool {
+    contact.mu > 0.0 || contact.grained
+}
+
+/// The largest tangential forces in two directions at right angles, for unit normal force.
+fn tangential(contact: &ScaledContact) -> [Vec3; 2] {
+    if let Some([(a, along), (b, across)]) = contact.axes() {
+        return [a * along, b * across];
+    }
+    let t1 = any_orthogonal(&contact.n);
+    [t1 * contact.mu, contact.n.cross(&t1) * contact.mu]
 }
 
 /// The wrenches of unit components: the columns of G scaled by 1, μ, μ, γ.
@@ -142,10 +155,8 @@ fn scaled_grasp_map(grasp: &ScaledGrasp) -> DMatrix<f64> {
     for contact in grasp.contacts() {
         let mut force = |f: Vec3| columns.extend(f.iter().chain(&contact.r.cross(&f)));
         force(contact.n);
-        if contact.mu > 0.0 {
-            let t1 = any_orthogonal(&contact.n);
-            force(t1 * contact.mu);
-            force(contact.n.cross(&t1) * contact.mu);
+        if has_friction(contact) {
+            tangential(contact).into_iter().for_each(&mut force);
         }
         if contact.gamma > 0.0 {
             columns.extend(Vec3::zeros().iter().chain(&(contact.n * contact.gamma)));
@@ -283,9 +294,9 @@ fn internal_force(grasp: &ScaledGrasp, forces: &DVector<f64>) -> Certificate {
     let mut first = 0;
     for contact in grasp.contacts() {
         let mut f = contact.n * forces[first];
-        if contact.mu > 0.0 {
-            let t1 = any_orthogonal(&contact.n);
-            f += (t1 * forces[first + 1] + contact.n.cross(&t1) * forces[first + 2]) * contact.mu;
+        if has_friction(contact) {
+            let [u, v] = tangential(contact);
+            f += u * forces[first + 1] + v * forces[first + 2];
         }
         let dimension = components(contact);
         let spins = contact.gamma > 0.0;

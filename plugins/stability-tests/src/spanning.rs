@@ -114,9 +114,9 @@ fn push_stays_inside(set: &WrenchSet<'_>, i: usize, d: &Twist) -> bool {
     let contact = &set.contacts()[i];
     let v = d.a + d.b.cross(&contact.r);
     let v_n = v.dot(&contact.n);
-    let tangential = (v - contact.n * v_n) * contact.mu;
+    let tangential = v - contact.n * v_n;
     let spin = contact.gamma * d.b.dot(&contact.n);
-    let spread = (tangential.norm_squared() + spin * spin).sqrt();
+    let spread = (contact.form(&tangential, &tangential) + spin * spin).sqrt();
     set.inner() * (1.0 + v_n) - spread >= KEPT
 }
 
@@ -150,7 +150,7 @@ fn push_force(set: &WrenchSet<'_>, i: usize, d: &Twist) -> Extreme {
     }
     let v = d.a + d.b.cross(&contact.r);
     let v_n = v.dot(&contact.n);
-    force.f = contact.n * v_n + (v - contact.n * v_n) * (contact.mu * contact.mu);
+    force.f = contact.n * v_n + contact.squared(&(v - contact.n * v_n));
     force.m = contact.gamma * contact.gamma * d.b.dot(&contact.n);
     force
 }

@@ -193,8 +193,11 @@ impl<'a> WrenchSet<'a> {
         let v_n = v.dot(&contact.n);
         let beta = contact.gamma * w.b.dot(&contact.n);
         let Some(ring) = self.ring else { return round(i, contact, &v, v_n, beta) };
-        if contact.mu <= 0.0 && contact.gamma <= 0.0 {
+        if contact.mu <= 0.0 && contact.gamma <= 0.0 && !contact.grained {
             return Extreme { value: v_n, contact: i, f: contact.n, m: 0.0 };
+        }
+        if let Some(axes) = contact.axes() {
+            return grained(i, contact, ring, &axes, &v, beta);
         }
         let [t1, t2] = self.tangents[i];
         let ([cos, sin], across) = ring.farthest(v.dot(&t1), v.dot(&t2));
@@ -222,12 +225,28 @@ impl<'a> WrenchSet<'a> {
     }
 }
 
-/// The farthest wrench of a round cone: the support function's point of contact.
+/// The farthest edge of a cone with a grain: the ring's, stretched along and across it.
+fn grained(
+    i: usize,
+    contact: &ScaledContact,
+    ring: &Ring,
+    [(a, along), (b, across)]: &[(Vec3, f64); 2],
+    v: &Vec3,
+    beta: f64,
+) -> Extreme {
+    let ([cos, sin], level) = ring.farthest(v.dot(a) * along, v.dot(b) * across);
+    let (latitude, reach) =
+        if contact.gamma > 0.0 { ring.steepest(level, beta) } else { ([1.0, 0.0], level) };
+    let f = contact.n + (a * (cos * along) + b * (sin * across)) * latitude[0];
+    Extreme { value: v.dot(&contact.n) + reach, contact: i, f, m: contact.gamma * latitude[1] }
+}
+
+/// The farthest wrench of an elliptic cone: the support function's point of contact.
 #[inline]
 fn round(i: usize, contact: &ScaledContact, v: &Vec3, v_n: f64, beta: f64) -> Extreme {
-    let tangential = (v - contact.n * v_n) * contact.mu;
-    let reach = (tangential.norm_squared() + beta * beta).sqrt();
+    let tangential = v - contact.n * v_n;
+    let reach = (contact.form(&tangential, &tangential) + beta * beta).sqrt();
     let scale = if reach > 0.0 { 1.0 / reach } else { 0.0 };
-    let f = contact.n + tangential * (contact.mu * scale);
+    let f = contact.n + contact.squared(&tangential) * scale;
     Extreme { value: v_n + reach, contact: i, f, m: contact.gamma * beta * scale }
 }

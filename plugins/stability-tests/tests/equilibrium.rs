@@ -7,8 +7,8 @@ use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverSt
 use nalgebra::{DMatrix, Vector6};
 use proptest::prelude::*;
 use regrasp_api::{
-    Assessment, CallError, Certificate, Cone, ConeEdge, Criterion, FingerIndex, Grasp, GraspContact, Hint,
-    Random, Rotation, Stability, StabilityTest, Vec3, any_orthogonal,
+    Assessment, Certificate, Cone, ConeEdge, Criterion, FingerIndex, Grasp, GraspContact, Random, Rotation,
+    Stability, StabilityTest, Vec3, any_orthogonal,
 };
 use regrasp_stability_tests::{Equilibrium, EquilibriumSettings};
 use support::{Family, Touch, grasp_of, moved, random_touches, touch, verdict, verdict_of, with_context};
@@ -326,18 +326,25 @@ proptest! {
 }
 
 #[test]
-fn it_says_what_it_means_and_refuses_edges() {
+fn it_says_what_it_means_and_takes_edges() {
     let test = test_of(EquilibriumSettings::default(), 0.1, Vec3::zeros());
     match test.criterion() {
         Criterion::Equilibrium(load) => assert_eq!(load.max_normal_force, 20.0),
         other => panic!("{other:?}"),
     }
     assert_eq!(support::force_closure().criterion(), Criterion::Closure);
-    let edges = [ConeEdge { tangential: [0.5, 0.0], torsion: 0.0 }; 3];
-    let mut grasp = Grasp::new(DOWN);
-    let (p_OC, n_O, cone) = (Vec3::x(), Vec3::x(), Cone::Polyhedral(edges[..].into()));
-    grasp.push(GraspContact { finger: FingerIndex(0), p_OC, n_O, cone });
-    let mut context = regrasp_api::Context::new(Random::from_key(0, 0, 0, 0), &regrasp_api::Uninterrupted);
-    let said = test.test(&grasp, &mut Hint::default(), &mut context);
-    assert!(matches!(said, Err(CallError::Unsupported { .. })), "{said:?}");
+    // Four pyramids round a ball carry it; three edges along one line carry nothing.
+    let carried = |edges: Vec<ConeEdge>| {
+        let mut grasp = Grasp::new(DOWN);
+        for touch in equator(4, 0.8) {
+            let (p_OC, n_O, cone) = (touch.p, touch.n, Cone::Polyhedral(edges.clone().into()));
+            grasp.push(GraspContact { finger: FingerIndex(0), p_OC, n_O, cone });
+        }
+        let found = assess(&test, &grasp);
+        assert_eq!(found.stability.is_stable(), found.certificate != Certificate::None, "{found:?}");
+        found.stability.is_stable()
+    };
+    let edge = |x: f64, y: f64| ConeEdge { tangential: [x, y], torsion: 0.0 };
+    assert!(carried(vec![edge(0.7, 0.0), edge(-0.7, 0.0), edge(0.0, 0.7), edge(0.0, -0.7)]));
+    assert!(!carried(vec![edge(0.5, 0.0), edge(0.0, 0.0), edge(-0.5, 0.0)]));
 }

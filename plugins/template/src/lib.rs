@@ -7,6 +7,7 @@
 pub mod contact_model;
 pub mod graph_strategy;
 pub mod local_planner;
+pub mod python;
 pub mod sampler;
 pub mod stability_test;
 pub mod surface;

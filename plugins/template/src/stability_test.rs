@@ -78,7 +78,7 @@ impl PressedPair {
 fn slope(contact: &GraspContact<'_>) -> Result<f64, CallError> {
     match &contact.cone {
         Cone::Elliptic { mu, .. } => Ok(*mu),
-        Cone::Polyhedral(_) => Err(CallError::Unsupported {
+        Cone::Grained(_) | Cone::Polyhedral(_) => Err(CallError::Unsupported {
             plugin: ENTRY.id.into(),
             reason: "it knows round friction cones only; use another stability test with this contact model"
                 .into(),

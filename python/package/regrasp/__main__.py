@@ -1,4 +1,5 @@
-"""The command line of the package, for plugins in Python: ``plan sphere --load my_plugin.py``.
+"""The command line of the package, for plugins in Python: ``plan sphere --load my_plugin.py``, and
+``new-plugin sampler mine`` for one to start from.
 
 Options and exit codes are those of the program ``regrasp``: 0 done; 2 bad input; 3 no plan; 4 a plan that
 does not verify; 130 interrupted.
@@ -10,6 +11,7 @@ import argparse
 import importlib.util
 import inspect
 import json
+import re
 import sys
 import traceback
 from pathlib import Path
@@ -17,6 +19,7 @@ from typing import Any
 
 import regrasp as rg
 
+from . import _regrasp
 from ._roles import ROLES, Plugin, plugin_id
 
 
@@ -95,10 +98,38 @@ def conform(given: argparse.Namespace) -> None:
         raise rg.VerificationError("a plugin breaks the laws of its role")
 
 
+def new_plugin(given: argparse.Namespace) -> None:
+    """``new-plugin``."""
+    if not re.fullmatch(r"[a-z][a-z0-9]*(-[a-z0-9]+)*", given.name):
+        raise rg.ArgumentError(
+            f"the name `{given.name}` is not in kebab case (lower-case letters and digits, words joined by "
+            "`-`, a letter first)",
+            key="name",
+            value=given.name,
+        )
+    id = f"{given.role}/{given.name}"
+    if any(plugin.id == id for plugin in rg.plugins()):
+        raise rg.ArgumentError(f"there is a plugin `{id}`; choose another name", key="name", value=given.name)
+    files = _regrasp.plugin_package(given.role, given.name)
+    folder = Path(given.output or f"{given.name}-{given.role}")
+    if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
+        raise rg.ArgumentError(f"`{folder}` exists; give another folder with `-o`", key="output")
+    for path, text in files:
+        place = folder / path
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(text, encoding="utf-8")
+    print(f"`{folder}` has the plugin `{id}`; it works as it is: cd {folder} && python -m pytest")
+
+
 def parser() -> argparse.ArgumentParser:
     """The command line's form."""
     top = argparse.ArgumentParser(prog="python -m regrasp", description=inspect.getdoc(sys.modules[__name__]))
     commands = top.add_subparsers(required=True)
+    form = commands.add_parser("new-plugin", help="write a package with a plugin of your own, and its test")
+    form.set_defaults(run=new_plugin, load=[])
+    form.add_argument("role", help="such as sampler")
+    form.add_argument("name", help="in kebab case")
+    form.add_argument("-o", "--output", metavar="FOLDER")
     for command, run in (("plan", plan), ("compare", compare), ("conform", conform)):
         form = commands.add_parser(command)
         form.set_defaults(run=run)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _regrasp
 from ._errors import ArgumentError, StudyError
-from ._planning import Callback, Teller, slot_and_key, whole
+from ._planning import MOST, Callback, Teller, seconds, setting_text, slot_and_key, whole
 from ._plot import study_figure
 from ._roles import chosen
 from ._scenario import Scenario
@@ -123,13 +123,14 @@ def compare(
     if not given:
         raise ArgumentError("`scenarios` are none: there is nothing to plan", key="scenarios")
     place = Path(tempfile.mkdtemp(prefix="regrasp-study-")) if output is None else Path(output)
+    vary = {path: _levels(path, values) for path, values in vary.items()}
     factors = [[_level(path, value) for value in values] for path, values in vary.items()]
     request: dict[str, Any] = {
         "factors": factors,
-        "seeds": whole("seeds", seeds),
+        "seeds": whole("seeds", seeds, 1, MOST),
         "first_seed": whole("first_seed", first_seed),
-        "time_limit": time_limit,
-        "threads": whole("threads", threads),
+        "time_limit": seconds("time_limit", time_limit),
+        "threads": whole("threads", threads, 1, 256),
         "shard": None,
         "skip_unsupported": skip_unsupported,
         "versions": _plugin_files(itertools.chain.from_iterable(vary.values())),
@@ -148,14 +149,24 @@ def compare(
     return Study(place)
 
 
-def _level(path: str, value: Any) -> Level:
-    import json
+def _levels(path: str, values: Any) -> list[Any]:
+    if isinstance(values, (str, type)) or not isinstance(values, Iterable):
+        message = f"`vary[{path!r}]` is a list such as ['rlg', 'projection'], not {values!r}"
+        raise ArgumentError(message, key=f"vary.{path}", value=repr(values))
+    levels = list(values)
+    if not levels:
+        raise ArgumentError(f"`vary[{path!r}]` is empty: there is nothing to compare", key=f"vary.{path}")
+    return levels
 
+
+def _level(path: str, value: Any) -> Level:
     if "." not in path.removeprefix("local-planner."):
         plugin, settings = chosen(path, value)
-        return path, plugin, [(key, json.dumps(setting)) for key, setting in settings.items()]
+        return path, plugin, [
+            (key, setting_text(f"{path}.{key}", setting)) for key, setting in settings.items()
+        ]
     slot, key = slot_and_key(path)
-    return slot, None, [(key, json.dumps(value))]
+    return slot, None, [(key, setting_text(path, value))]
 
 
 def _classes(values: Iterable[Sequence[Any]]) -> list[type]:

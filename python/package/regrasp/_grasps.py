@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _regrasp
-from ._planning import native_changes, whole
+from ._planning import MOST, native_changes, seed_of, whole
 from ._scenario import Scenario
 from ._spatial import Array
 
@@ -110,17 +110,17 @@ def grasps(
         As for :func:`regrasp.plan`.
     """
     asked = {
-        "count": whole("count", count),
-        "seed": whole("seed", seed),
+        "count": whole("count", count, 1, MOST),
+        "seed": seed_of(seed),
         "spread": float(spread),
-        "per_pose": whole("per_pose", per_pose),
-        "per_facet": None if per_facet is None else whole("per_facet", per_facet),
+        "per_pose": whole("per_pose", per_pose, 1),
+        "per_facet": None if per_facet is None else whole("per_facet", per_facet, 1),
         "fingers": fingers,
         "graph": bool(graph),
     }
     changes = native_changes(use, settings, time_limit, None)
     native = Scenario.of(scenario).native
-    archive = np.load(io.BytesIO(_regrasp.grasps(native, asked, whole("threads", threads), changes)))
+    archive = np.load(io.BytesIO(_regrasp.grasps(native, asked, whole("threads", threads, 1, 256), changes)))
     arrays = {name: archive[name] for name in archive.files}
     arrays.pop("grasps_problem")
     return Grasps(info=json.loads(str(arrays.pop("grasps_info"))), **arrays)

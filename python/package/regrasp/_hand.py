@@ -145,11 +145,13 @@ class Hand:
                 message = f"there is no finger {finger!r}; there are {', '.join(names)}"
                 raise ArgumentError(message, key="finger", value=finger)
             return names.index(finger)
-        if not 0 <= finger < len(self.fingers):
-            highest = len(self.fingers) - 1
+        highest = len(self.fingers) - 1
+        if not hasattr(finger, "__index__"):
+            raise TypeError(f"`finger` is a number, 0..={highest}, or a name, not {finger!r}")
+        if not 0 <= finger <= highest:
             message = f"`finger` = {finger} is outside 0..={highest}"
             raise ArgumentError(message, key="finger", value=str(finger), range=f"0..={highest}")
-        return finger
+        return int(finger)
 
     def fk(self, finger: int | str, joints: npt.ArrayLike) -> Array:
         """Centres of a fingertip in the hand's frame (m).
@@ -183,10 +185,8 @@ class Hand:
         ndarray, (N, F, 3) or (F, 3)
         """
         alone = np.ndim(joints) == 1
-        ends = np.cumsum([len(finger.joints) for finger in self.fingers])
-        q = array("joints", np.atleast_2d(np.asarray(joints)), (None, int(ends[-1])))
-        parts = (np.ascontiguousarray(part) for part in np.split(q, ends[:-1], axis=1))
-        centers = np.stack([self._native.fk(i, part) for i, part in enumerate(parts)], axis=1)
+        count = sum(len(finger.joints) for finger in self.fingers)
+        centers = self._native.fingertips(array("joints", np.atleast_2d(np.asarray(joints)), (None, count)))
         return centers[0] if alone else centers
 
     def jacobian(self, finger: int | str, joints: npt.ArrayLike) -> Array:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _regrasp
 from ._errors import ArgumentError
-from ._planning import native_changes, whole
+from ._planning import MOST, native_changes, seed_of, whole
 from ._regrasp import Configuration
 from ._scenario import Scenario
 from ._spatial import Array, array, numbers_of
@@ -94,7 +94,7 @@ def closure_margin(
     """
     alone, p, n, cones = _grasps(points, normals, friction, torsion)
     about = None if center is None else array("center", center, (3,)).tolist()
-    if length is not None and not 0 < length < np.inf:
+    if length is not None and not 0 < float(numbers_of("length", length)) < np.inf:
         raise ArgumentError(
             f"`length` = {length} is outside 0..", key="length", value=str(length), range="0.."
         )
@@ -134,8 +134,7 @@ def wrench_cones(
     ndarray, (N, K, edges, 6), or (K, edges, 6) for one grasp
         At unit normal force: forces along the inward normal.
     """
-    if edges < 3:
-        raise ArgumentError(f"`edges` = {edges} is outside 3..", key="edges", value=str(edges), range="3..")
+    edges = whole("edges", edges, 3, 100_000)
     alone, p, n, cones = _grasps(points, normals, friction, 0.0)
     inward = -n
     other = np.where(np.abs(inward[..., :1]) < 0.9, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
@@ -185,7 +184,8 @@ class Bench:
 
     def sample_contacts(self, count: int, *, seed: int = 0) -> SurfacePoints:
         """Random contacts, uniform over what a fingertip can touch."""
-        return SurfacePoints(**self._native.sample_contacts(whole("count", count), whole("seed", seed)))
+        number = whole("count", count, 0, MOST)
+        return SurfacePoints(**self._native.sample_contacts(number, seed_of(seed)))
 
     def closest_points(self, centers: npt.ArrayLike) -> tuple[SurfacePoints, Array]:
         """The contacts closest to fingertip centres (N, 3) in O (m), and signed distances (N,) (m),
@@ -210,10 +210,11 @@ class Bench:
 
         Fewer than `count` where `tries` samples, ten times as many by default, do not give as many.
         """
-        number = whole("count", count)
-        fingers = None if holding is None else [whole("holding", finger) for finger in holding]
-        most = 10 * number if tries is None else whole("tries", tries)
-        return self._native.sample_grasps(number, whole("seed", seed), fingers, most)
+        number = whole("count", count, 0, MOST)
+        highest = len(self.scenario.problem["hand"]["finger"]) - 1
+        fingers = None if holding is None else [whole("holding", finger, 0, highest) for finger in holding]
+        most = 10 * number if tries is None else whole("tries", tries, 0, 2**63)
+        return self._native.sample_grasps(number, seed_of(seed), fingers, most)
 
     def margins(self, configurations: Sequence[Configuration]) -> Array:
         """Bounds (N, 2) of what the scenario's stability test gives configurations, about the object's

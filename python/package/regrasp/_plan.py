@@ -15,9 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _regrasp
-from ._errors import VerificationError
+from ._errors import PlanFileError, VerificationError
 from ._figures import Figures, figures
 from ._plot import plan_figure
+from ._scenario import not_finite, plain
 from ._spatial import matrices
 from ._view import View, facts, frame
 
@@ -134,7 +135,13 @@ class Plan:
     @classmethod
     def from_dict(cls, tree: dict[str, Any]) -> Plan:
         """A plan from the tree of its file, as :meth:`to_dict` gives it."""
-        return cls(_regrasp.Plan.parse(json.dumps(tree), "the given tree"))
+        try:
+            text = json.dumps(tree, default=plain, allow_nan=False)
+        except (TypeError, ValueError, RecursionError) as error:
+            place = not_finite(tree) if "range float" in str(error) else ""
+            where = f"`{place}`: " if place else ""
+            raise PlanFileError(f"the given tree is no plan: {where}{error}") from error
+        return cls(_regrasp.Plan.parse(text, "the given tree"))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the plan file; a failure leaves what was there before."""
@@ -239,6 +246,11 @@ class Plan:
         return [Segment(*segment) for segment in self._native.segments()]
 
     @property
+    def goals_reached(self) -> list[int]:
+        """How many of :attr:`segments` there are up to each goal, in turn."""
+        return list(self._head["goals_reached"])
+
+    @property
     def duration(self) -> float:
         """Seconds that the motion takes."""
         return float(self.times[-1]) if len(self.times) else 0.0
@@ -304,7 +316,11 @@ class Plan:
         ]
 
     def to_frame(self) -> pandas.DataFrame:
-        """The states as a table: a row a state, indexed by time, with segment and kind; needs pandas."""
+        """The states as a table: a row a state, indexed by time, with segment and kind; needs pandas.
+
+        The object's pose stands in ``object.x`` to ``object.z`` and ``object.qw`` to ``object.qz``, as in the
+        tables of ``regrasp export``.
+        """
         import pandas
 
         segment = np.zeros(len(self.times), dtype=int)
@@ -314,8 +330,9 @@ class Plan:
             "segment": segment,
             "kind": [self.segments[number].kind for number in segment],
         }
-        columns |= dict(zip(("x", "y", "z"), self.positions.T, strict=True))
-        columns |= dict(zip(("qw", "qx", "qy", "qz"), self.orientations.T, strict=True))
+        columns |= dict(zip(("object.x", "object.y", "object.z"), self.positions.T, strict=True))
+        turned = ("object.qw", "object.qx", "object.qy", "object.qz")
+        columns |= dict(zip(turned, self.orientations.T, strict=True))
         columns |= dict(zip(self.joint_names, self.joints.T, strict=True))
         columns |= dict(
             zip((f"{name}/holds" for name in self.finger_names), self.contacts.holding.T, strict=True)

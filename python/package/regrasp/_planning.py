@@ -11,10 +11,11 @@ from types import TracebackType
 from typing import Any, Literal
 
 from . import _regrasp
-from ._errors import NoPlan
+from ._errors import ArgumentError, NoPlan
 from ._plan import Plan, Verdict, refused
 from ._roles import chosen
-from ._scenario import Scenario
+from ._scenario import Scenario, plain
+from ._spatial import numbers_of
 
 logger = logging.getLogger("regrasp")
 
@@ -110,16 +111,44 @@ def plan(
         logger.info("%s", remark)
     changes = native_changes(use, settings, time_limit, max_nodes)
     with Teller(progress) as tell:
-        solved = _regrasp.solve(checked.native, whole("seed", seed), whole("threads", threads), changes, tell)
+        solved = _regrasp.solve(
+            checked.native, seed_of(seed), whole("threads", threads, 1, 256), changes, tell
+        )
     return _answer(solved)
 
 
-def whole(key: str, value: Any) -> int:
-    """A whole number, of numpy or of Python's own."""
+def whole(key: str, value: Any, least: int | None = None, most: int | None = None) -> int:
+    """A whole number, of numpy or of Python's own, within its range."""
     try:
-        return int(value.__index__())
+        number = int(value.__index__())
     except AttributeError:
         raise TypeError(f"`{key}` must be a whole number, not {type(value).__name__}") from None
+    if (least is not None and number < least) or (most is not None and number > most):
+        allowed = f"{'' if least is None else least}..{'' if most is None else f'={most}'}"
+        message = f"`{key}` = {number} is outside {allowed}"
+        raise ArgumentError(message, key=key, value=str(number), range=allowed)
+    return number
+
+
+def seed_of(seed: Any) -> int:
+    """A seed."""
+    return whole("seed", seed, 0, 2**64 - 1)
+
+
+def seconds(key: str, value: Any) -> float | None:
+    """A limit of time (s), or None for none."""
+    if value is None:
+        return None
+    number = float(numbers_of(key, value))
+    if not 1e-3 <= number <= 1e7:
+        allowed = "0.001..=10000000 s"
+        message = f"`{key}` = {number} is outside {allowed}"
+        raise ArgumentError(message, key=key, value=str(value), range=allowed)
+    return number
+
+
+#: The most things that one call draws: more would fill the memory.
+MOST = 10_000_000
 
 
 def native_changes(
@@ -129,25 +158,45 @@ def native_changes(
     max_nodes: int | None,
 ) -> dict[str, Any]:
     """What a caller changes in a scenario, as the native module takes it."""
-    chosen_ids = {slot: chosen(slot, plugin) for slot, plugin in (use or {}).items()}
+    chosen_ids = {slot: chosen(slot, plugin) for slot, plugin in _tree("use", use).items()}
     own = [
-        (slot, key, json.dumps(value))
+        (slot, key, setting_text(f"{slot}.{key}", value))
         for slot, (_, values) in chosen_ids.items()
         for key, value in values.items()
     ]
-    split = [(*slot_and_key(key), json.dumps(value)) for key, value in (settings or {}).items()]
+    split = [
+        (*slot_and_key(key), setting_text(key, value)) for key, value in _tree("settings", settings).items()
+    ]
     return {
         "uses": [(slot, plugin) for slot, (plugin, _) in chosen_ids.items()],
         "settings": own + split,
-        "time_limit": time_limit,
-        "max_nodes": max_nodes,
+        "time_limit": seconds("time_limit", time_limit),
+        "max_nodes": None if max_nodes is None else whole("max_nodes", max_nodes, 1, MOST),
     }
+
+
+def _tree(key: str, given: Mapping[str, Any] | None) -> Mapping[str, Any]:
+    if given is not None and not isinstance(given, Mapping):
+        example = {"use": '{"sampler": "rlg"}', "settings": '{"sampler.poses": 200}'}[key]
+        raise TypeError(f"`{key}` is a dict such as {example}, not {given!r}")
+    return given or {}
+
+
+def setting_text(path: str, value: Any) -> str:
+    """A setting's value as JSON, of numpy's kinds too."""
+    try:
+        return json.dumps(value, default=plain, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f"`{path}` = {value!r}: {error}", key=path, value=repr(value)) from error
 
 
 def slot_and_key(path: str) -> tuple[str, str]:
     """Slot and key of ``local-planner.transfer.max_slip``."""
-    parts = path.split(".")
+    parts = path.split(".") if isinstance(path, str) else [""]
     size = 2 if parts[0] == "local-planner" else 1
+    if not all(parts) or len(parts) == size:
+        message = f"`{path}` is no setting: give its slot and its key, such as `sampler.poses`"
+        raise ArgumentError(message, key="settings", value=path)
     return ".".join(parts[:size]), ".".join(parts[size:])
 
 
@@ -185,6 +234,8 @@ class Teller:
     """Tells a callback, or a bar, how far a run is; shows itself as the native module's callback, or None."""
 
     def __init__(self, progress: bool | Callback) -> None:
+        if not (callable(progress) or isinstance(progress, bool)):
+            raise TypeError(f"`progress` is True, False or a callable, not {progress!r}")
         self._callback = progress if callable(progress) else None
         self._bar = _bar() if progress is True else None
 

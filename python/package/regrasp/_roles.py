@@ -107,6 +107,9 @@ class Plugin:
     def __init__(self, settings: Any = None) -> None:
         self.settings = type(self).Settings() if settings is None else settings
 
+    def _missing(self, method: str) -> NotImplementedError:
+        return NotImplementedError(f"`{type(self).__name__}` defines no `{method}`, which its role needs")
+
     def prepare(self, parts: Parts) -> None:
         """Called once when the plugin is built, for one object and hand."""
 
@@ -131,7 +134,7 @@ class ContactModel(Plugin):
             inward normal, and
             torsion (m).
         """
-        raise NotImplementedError
+        raise self._missing("cone")
 
 
 class StabilityTest(Plugin):
@@ -143,7 +146,7 @@ class StabilityTest(Plugin):
         """True where the grasp is stable, False where it is not, None where it is too close to say (taken
         as not).
         """
-        raise NotImplementedError
+        raise self._missing("test")
 
     def margin(self, grasp: Grasp, length: float | None, center: Array | None) -> tuple[float, float]:
         """A certified lower bound of the margin, not positive where not stable, and an upper bound.
@@ -161,7 +164,7 @@ class Surface(Plugin):
 
     def sample(self, context: Context) -> Contact:
         """A random contact, uniform over the area that a fingertip can touch."""
-        raise NotImplementedError
+        raise self._missing("sample")
 
     def geodesic(
         self, start: Contact, end: Contact, context: Context
@@ -170,21 +173,21 @@ class Surface(Plugin):
 
         The first waypoint is `start` at 0, the last is `end`; None where the fingertip cannot follow.
         """
-        raise NotImplementedError
+        raise self._missing("geodesic")
 
     def project(self, point: Array, hint: int | None) -> tuple[Contact, float]:
         """The contact closest to a fingertip's centre (m, in O), and the signed distance (m); negative
         inside.
         """
-        raise NotImplementedError
+        raise self._missing("project")
 
     def walk(self, contact: Contact, direction: Array, distance: float) -> Contact:
         """The contact reached by walking straight ahead along `direction` for `distance` (m)."""
-        raise NotImplementedError
+        raise self._missing("walk")
 
     def edge_distance(self, contact: Contact) -> float:
         """Distance (m) to the nearest sharp edge; infinite where there is none."""
-        raise NotImplementedError
+        raise self._missing("edge_distance")
 
 
 class Sampler(Plugin):
@@ -199,7 +202,7 @@ class Sampler(Plugin):
 
         What is returned has passed ``task.admit``. Count every failed try: ``context.reject("reach")``.
         """
-        raise NotImplementedError
+        raise self._missing("sample")
 
     def close(
         self, task: Task, pose: Array, contacts: list[Contact | None], near: Configuration, context: Context
@@ -239,7 +242,7 @@ class LocalPlanner(Plugin):
         stop : str or None
             Why it stopped short, such as ``"collision"``; None exactly when `fraction` is 1.
         """
-        raise NotImplementedError
+        raise self._missing("connect")
 
 
 @dataclass(frozen=True)
@@ -288,11 +291,14 @@ class GraphStrategy(Plugin):
 
     def decide(self, graph: Graph, context: Context) -> Action:
         """The next action; the view of the graph is the only memory."""
-        raise NotImplementedError
+        raise self._missing("decide")
 
     def next(self, graph: Graph, context: Context) -> tuple[str, int, int, str]:
         """What the planner calls."""
-        return self.decide(graph, context).code
+        action = self.decide(graph, context)
+        if not isinstance(action, Action):
+            raise TypeError(f"`decide` answers with an Action, such as Action.explore(), not {action!r}")
+        return action.code
 
 
 ROLES = (ContactModel, StabilityTest, Surface, Sampler, LocalPlanner, GraphStrategy)
@@ -400,6 +406,10 @@ def chosen(slot: str, plugin: Any) -> tuple[str, dict[str, Any]]:
         return plugin, {}
     if isinstance(plugin, Mapping):
         given = dict(plugin)
+        if "use" not in given:
+            example = '{"use": "rlg", "poses": 200}'
+            message = f"`use[{slot!r}]` names no plugin: give its id beside its settings, such as {example}"
+            raise PluginError(message, slot=slot, key="use")
         return str(given.pop("use")), given
     kind = plugin if inspect.isclass(plugin) else type(plugin)
     if not issubclass(kind, ROLES):

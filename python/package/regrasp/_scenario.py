@@ -231,13 +231,15 @@ def scenario_text(name: str) -> str:
 
 def _json(tree: Mapping[str, Any], name: str) -> str:
     try:
-        return json.dumps(tree, default=_plain, allow_nan=False, indent=1)
-    except ValueError as error:
-        place = _not_finite(tree)
+        return json.dumps(tree, default=plain, allow_nan=False, indent=1)
+    except (ValueError, RecursionError) as error:
+        if isinstance(error, RecursionError) or "Circular" in str(error):
+            raise ArgumentError(f"`{name}` holds itself: a scenario is a tree", key=name) from error
+        place = not_finite(tree)
         raise ArgumentError(f"`{place or name}`: {error}", key=place) from error
 
 
-def _plain(value: object) -> object:
+def plain(value: object) -> object:
     """What JSON has no form for: numpy's numbers and arrays, paths."""
     if isinstance(value, np.ndarray):
         return value.tolist()
@@ -248,12 +250,12 @@ def _plain(value: object) -> object:
     raise TypeError(f"a scenario holds numbers, texts, lists and dicts, not {type(value).__name__}")
 
 
-def _not_finite(tree: object, path: str = "") -> str:
+def not_finite(tree: object, path: str = "") -> str:
     """The path of the first number that is NaN or infinite; empty where there is none."""
     if isinstance(tree, Mapping):
-        found = (_not_finite(value, f"{path}.{key}" if path else str(key)) for key, value in tree.items())
+        found = (not_finite(value, f"{path}.{key}" if path else str(key)) for key, value in tree.items())
     elif isinstance(tree, (list, tuple, np.ndarray)):
-        found = (_not_finite(value, f"{path}[{index}]") for index, value in enumerate(tree))
+        found = (not_finite(value, f"{path}[{index}]") for index, value in enumerate(tree))
     else:
         bad = isinstance(tree, (float, np.floating)) and not np.isfinite(tree)
         return path if bad else ""

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from . import _regrasp
+from ._errors import ArgumentError
 from ._roles import Plugin, plugin_id, register
 
 
@@ -49,7 +50,12 @@ class Report:
         assert self, str(self)
 
 
-def check(plugin: type[Plugin] | str, settings: Mapping[str, Any] | None = None) -> Report:
+def check(
+    plugin: type[Plugin] | str,
+    settings: Mapping[str, Any] | None = None,
+    *,
+    geodesic_tolerance: float | None = None,
+) -> Report:
     """Puts a plugin through every law of its role.
 
     Parameters
@@ -58,10 +64,20 @@ def check(plugin: type[Plugin] | str, settings: Mapping[str, Any] | None = None)
         A class derived from a role, or the id of a registered or built-in plugin.
     settings : dict, optional
         To build it with; its defaults stand for what is absent.
+    geodesic_tolerance : float, optional
+        By how much (relative, no unit) a surface's paths may be longer than the shortest; 0.001 by default.
 
     An exception of the plugin counts as a broken law.
     """
     name = plugin_id(register(plugin)) if inspect.isclass(plugin) else plugin
     text = json.dumps(dict(settings)) if settings else ""
-    tree = json.loads(_regrasp.conformance(name, text))
+    if geodesic_tolerance is not None and not 0 <= geodesic_tolerance <= 1:
+        value = str(geodesic_tolerance)
+        raise ArgumentError(
+            f"`geodesic_tolerance` = {value} is outside 0..=1",
+            key="geodesic_tolerance",
+            value=value,
+            range="0..=1",
+        )
+    tree = json.loads(_regrasp.conformance(name, text, geodesic_tolerance))
     return Report(tree["plugin"], [Law(**law) for law in tree["checks"]])

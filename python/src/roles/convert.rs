@@ -3,7 +3,10 @@
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use regrasp::api::{FingerIndex, FingerJoints, FingerSet, MAX_FINGER_JOINTS, Pose, Reason, Rotation, Vec3};
+use regrasp::api::{
+    Configuration, FingerIndex, FingerJoints, FingerSet, Hand, MAX_FINGER_JOINTS, Pose, Reason, Rotation,
+    Vec3,
+};
 
 /// A vector as an array (3,).
 pub fn vector<'py>(py: Python<'py>, v: &Vec3) -> Bound<'py, PyArray1<f64>> {
@@ -68,6 +71,21 @@ pub fn to_finger(finger: u8, count: usize) -> PyResult<FingerIndex> {
 /// A set of fingers of a hand with `count` fingers.
 pub fn to_fingers(fingers: &[u8], count: usize) -> PyResult<FingerSet> {
     fingers.iter().map(|&finger| to_finger(finger, count)).collect()
+}
+
+/// Whether a configuration has the fingers and joints of a hand.
+pub fn fits(hand: &dyn Hand, q: &Configuration) -> bool {
+    q.joints.len() == hand.finger_count()
+        && q.joints.iter().all(|(finger, joints)| joints.len() == hand.finger(finger).joints.len())
+}
+
+/// What a plugin answers, where it is one of this hand.
+pub fn of_this_hand(hand: &dyn Hand, method: &str, q: &Configuration) -> PyResult<()> {
+    if fits(hand, q) {
+        return Ok(());
+    }
+    let words = "answered with a configuration that has other fingers or joints than this hand";
+    Err(PyValueError::new_err(format!("`{method}` {words}")))
 }
 
 /// The reason of this name.

@@ -1,10 +1,11 @@
 //! Role 5 in Python.
 
-use super::convert::{matrix, to_reason};
+use super::convert::{matrix, of_this_hand, to_reason};
 use super::data::{Configuration, Contact};
 use super::loan::lend_task;
 use super::plugin::Plugin;
 use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use regrasp::api::{self, CallError, Context, FingerJoints, Path, Pose, Reached, Reason, Slot};
 
@@ -77,6 +78,18 @@ impl Target {
 /// A local planner.
 pub struct LocalPlanner(pub Plugin);
 
+impl LocalPlanner {
+    /// A class is asked only for the motions that it says it makes.
+    fn refuse_other_slots(&self, slot: Slot) -> Result<(), CallError> {
+        let slots: Vec<String> = self.0.call(|_, object| object.getattr("slots")?.extract())?;
+        if slots.iter().any(|own| own == slot.name()) {
+            return Ok(());
+        }
+        let reason = format!("it fills `{}`, not `{}`", slots.join("`, `"), slot.name());
+        Err(CallError::Unsupported { plugin: self.0.id.into(), reason })
+    }
+}
+
 /// The states after the first, the fraction made, and the reason for stopping short.
 type Answer = (Vec<Configuration>, f64, Option<String>);
 
@@ -91,12 +104,20 @@ impl api::LocalPlanner for LocalPlanner {
     ) -> Result<Reached, CallError> {
         let target = Target::from(to);
         let slot = target.slot;
+        self.refuse_other_slots(slot)?;
         let (states, fraction, stop): (Vec<Configuration>, f64, Option<Reason>) =
             self.0.with_context(slot, context, |py, object, context| {
-                lend_task(py, task, |task| {
-                    let arguments = (task, Configuration(from.clone()), target, context);
+                lend_task(py, task, |lent| {
+                    let arguments = (lent, Configuration(from.clone()), target, context);
                     let (states, fraction, stop): Answer =
                         object.call_method1("connect", arguments)?.extract()?;
+                    states.iter().try_for_each(|q| of_this_hand(task.hand, "connect", &q.0))?;
+                    if !(0.0..=1.0).contains(&fraction) || (fraction == 1.0) != stop.is_none() {
+                        let rule = "a fraction of 0 to 1, and a reason exactly where it is below 1";
+                        return Err(PyValueError::new_err(format!(
+                            "`connect` answers with {rule}, not {fraction} and {stop:?}"
+                        )));
+                    }
                     Ok((states, fraction, stop.map(|name| to_reason(&name)).transpose()?))
                 })
             })?;

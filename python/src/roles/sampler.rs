@@ -1,10 +1,11 @@
 //! Role 4 in Python.
 
-use super::convert::{fingers, matrix};
+use super::convert::{fingers, matrix, of_this_hand};
 use super::data::{Configuration, Contact};
 use super::loan::lend_task;
 use super::plugin::Plugin;
 use numpy::PyArray2;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use regrasp::api::{self, CallError, ClosedChainSampler, Context, FingerSet, PerFinger, Pose, Slot};
 
@@ -60,6 +61,29 @@ impl PoseRequest {
     }
 }
 
+/// The configuration in an answer, if there is one.
+fn answer(
+    task: &api::Task<'_>,
+    method: &str,
+    answer: &Bound<'_, PyAny>,
+) -> PyResult<Option<api::Configuration>> {
+    let found = answer.extract::<Option<Configuration>>().map_err(|_| {
+        PyTypeError::new_err(format!("`{method}` answers with a Configuration or None, not {answer}"))
+    })?;
+    found.map(|q| of_this_hand(task.hand, method, &q.0).map(|()| q.0)).transpose()
+}
+
+/// The configuration at the very pose that was asked for: as a matrix it lost the last bits.
+fn exactly(mut q: api::Configuration, asked: Option<&Pose>) -> api::Configuration {
+    if let Some(X_HO) = asked
+        && (q.X_HO.translation.vector - X_HO.translation.vector).norm() < 1e-12
+        && q.X_HO.rotation.angle_to(&X_HO.rotation) < 1e-7
+    {
+        q.X_HO = *X_HO;
+    }
+    q
+}
+
 /// A sampler.
 pub struct Sampler(pub Plugin);
 
@@ -72,15 +96,16 @@ impl ClosedChainSampler for Sampler {
         context: &mut Context<'_>,
     ) -> Result<Option<api::Configuration>, CallError> {
         let found = self.0.with_context(Slot::Sampler, context, |py, object, context| {
-            lend_task(py, task, |task| {
-                let arguments = (task, PoseRequest::from(pose), fingers(holding), context);
-                object
-                    .call_method1("sample", arguments)?
-                    .extract::<Option<Configuration>>()
-                    .map_err(PyErr::from)
+            lend_task(py, task, |lent| {
+                let arguments = (lent, PoseRequest::from(pose), fingers(holding), context);
+                answer(task, "sample", &object.call_method1("sample", arguments)?)
             })
         })?;
-        Ok(found.map(|configuration| configuration.0))
+        let asked = match pose {
+            api::PoseRequest::At(X_HO) => Some(X_HO),
+            _ => None,
+        };
+        Ok(found.map(|q| exactly(q, asked.as_ref())))
     }
 
     fn close(
@@ -93,14 +118,11 @@ impl ClosedChainSampler for Sampler {
     ) -> Result<Option<api::Configuration>, CallError> {
         let contacts: Vec<_> = contacts.iter().map(|(_, contact)| contact.map(Contact)).collect();
         let found = self.0.with_context(Slot::Sampler, context, |py, object, context| {
-            lend_task(py, task, |task| {
-                let arguments = (task, matrix(py, X_HO)?, contacts, Configuration(near.clone()), context);
-                object
-                    .call_method1("close", arguments)?
-                    .extract::<Option<Configuration>>()
-                    .map_err(PyErr::from)
+            lend_task(py, task, |lent| {
+                let arguments = (lent, matrix(py, X_HO)?, contacts, Configuration(near.clone()), context);
+                answer(task, "close", &object.call_method1("close", arguments)?)
             })
         })?;
-        Ok(found.map(|configuration| configuration.0))
+        Ok(found.map(|q| exactly(q, Some(X_HO))))
     }
 }

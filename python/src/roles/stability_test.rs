@@ -3,7 +3,7 @@
 use super::convert::vector;
 use super::data::Grasp;
 use super::plugin::Plugin;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use regrasp::api::{self, Assessment, CallError, Certificate, Context, Hint, Slot, Stability, Vec3};
 
@@ -54,7 +54,12 @@ impl api::StabilityTest for StabilityTest {
             let stability = verdict(&object.call_method1("test", (grasp.clone(),))?)?;
             let center = center_O.map(|center| vector(py, &center));
             let (margin_lower, margin_upper) =
-                object.call_method1("margin", (grasp, length, center))?.extract()?;
+                object.call_method1("margin", (grasp, length, center))?.extract::<(f64, f64)>()?;
+            if margin_lower.is_nan() || margin_upper.is_nan() {
+                return Err(PyValueError::new_err(
+                    "`margin` answered with NaN; give two bounds, a lower one first",
+                ));
+            }
             Ok(Assessment { stability, margin_lower, margin_upper, certificate: Certificate::None })
         })
     }

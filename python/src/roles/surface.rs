@@ -3,6 +3,7 @@
 use super::convert::vector;
 use super::data::{Contact, Context};
 use super::plugin::Plugin;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use regrasp::api::{self, CallError, Projection, Random, Slot, SurfaceParam, SurfacePath, Vec3, Waypoint};
 use std::sync::Arc;
@@ -42,6 +43,11 @@ impl SurfaceParam for Surface {
             answer.extract::<Option<(Vec<(Contact, f64)>, f64)>>()
         })?;
         let Some((waypoints, length)) = found else { return Ok(false) };
+        let numbers = waypoints.iter().map(|(_, travelled)| *travelled).chain([length]);
+        if !numbers.into_iter().all(|number| number.is_finite() && number >= 0.0) {
+            let reason = "`geodesic` answered with a length that is no length".into();
+            return Err(CallError::Contract { plugin: self.0.id.into(), reason });
+        }
         path.length = length;
         path.waypoints.clear();
         let waypoint = |(contact, lift_length): (Contact, f64)| Waypoint { contact: contact.0, lift_length };
@@ -58,6 +64,10 @@ impl SurfaceParam for Surface {
             |py, object| {
                 let answer = object.call_method1("project", (vector(py, p_OF), hint))?;
                 let (contact, distance): (Contact, f64) = answer.extract()?;
+                if !distance.is_finite() {
+                    let words = "is outside the finite numbers";
+                    return Err(PyValueError::new_err(format!("`project`: the distance {distance} {words}")));
+                }
                 Ok(Projection { contact: contact.0, distance })
             },
             // So far away that nothing counts as touching.

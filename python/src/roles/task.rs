@@ -1,7 +1,7 @@
 //! The task that samplers and local planners are handed: services and the other roles, for the time of one
 //! call.
 
-use super::convert::{fingers, matrix, to_finger, to_fingers, to_joints, to_pose, to_vector, vector};
+use super::convert::{fingers, fits, matrix, to_finger, to_fingers, to_joints, to_pose, to_vector, vector};
 use super::data::{Configuration, Contact, Context, Grasp};
 use super::loan::Loan;
 use numpy::{PyArray1, PyArray2};
@@ -32,10 +32,11 @@ impl Task {
     /// Refuses a configuration of another hand.
     fn check(&self, q: &Configuration) -> PyResult<api::Task<'static>> {
         let task = self.0.value()?;
-        let hand = task.hand;
-        let fits = q.0.joints.len() == hand.finger_count()
-            && q.0.joints.iter().all(|(finger, joints)| joints.len() == hand.finger(finger).joints.len());
-        if fits { Ok(task) } else { Err(PyValueError::new_err("the configuration does not fit this hand")) }
+        if fits(task.hand, &q.0) {
+            Ok(task)
+        } else {
+            Err(PyValueError::new_err("the configuration does not fit this hand"))
+        }
     }
 
     fn joints(&self, finger: u8, joints: &[f64]) -> PyResult<(api::FingerIndex, api::FingerJoints)> {
@@ -90,6 +91,31 @@ impl Task {
     #[getter]
     fn landmarks<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
         self.0.value()?.landmarks.iter().map(|pose| matrix(py, pose)).collect()
+    }
+
+    /// The distance that free bodies are to keep (m), between the stored states too.
+    #[getter]
+    fn clearance(&self) -> PyResult<f64> {
+        let task = self.0.value()?;
+        Ok(task.tolerances.clearance + task.resolution.clearance)
+    }
+
+    /// The height above the surface from which a finger counts as lifted (m).
+    #[getter]
+    fn lift(&self) -> PyResult<f64> {
+        Ok(self.0.value()?.resolution.lift)
+    }
+
+    /// The longest step of a fingertip between two states of a regrasp (m).
+    #[getter]
+    fn regrasp_step(&self) -> PyResult<f64> {
+        Ok(self.0.value()?.resolution.regrasp_step)
+    }
+
+    /// The joints of a finger, by number, that a fingertip's position leaves free.
+    fn spare(&self, finger: u8) -> PyResult<Vec<usize>> {
+        let hand = self.0.value()?.hand;
+        Ok(hand.finger(to_finger(finger, hand.finger_count())?).spare.to_vec())
     }
 
     fn rest<'py>(&self, py: Python<'py>, finger: u8) -> PyResult<Bound<'py, PyArray1<f64>>> {
@@ -207,6 +233,38 @@ impl Task {
         let task = self.check(q)?;
         let reason = answer(task.admissible.admit(&task, &q.0, &mut context.inner.borrow_mut()))?;
         Ok(reason.map(api::Reason::name))
+    }
+
+    /// What `admit` asks of one finger of `q` beside the fingers in `placed`: None where it may stay.
+    fn admit_finger(
+        &self,
+        q: &Configuration,
+        finger: u8,
+        placed: Vec<u8>,
+        context: &Context,
+    ) -> PyResult<Option<&'static str>> {
+        let (task, count) = (self.check(q)?, q.0.joints.len());
+        let (finger, placed) = (to_finger(finger, count)?, to_fingers(&placed, count)?);
+        let mut inner = context.inner.borrow_mut();
+        let reason = answer(task.admissible.admit_finger(&task, &q.0, finger, placed, &mut inner))?;
+        Ok(reason.map(api::Reason::name))
+    }
+
+    /// What `admit` asks of the grasp as a whole, once every finger may stay.
+    fn admit_grasp(&self, q: &Configuration, context: &Context) -> PyResult<Option<&'static str>> {
+        let task = self.check(q)?;
+        let reason = answer(task.admissible.admit_grasp(&task, &q.0, &mut context.inner.borrow_mut()))?;
+        Ok(reason.map(api::Reason::name))
+    }
+
+    /// Whether each posture of a finger that moves alone, the rest of `q` at rest, touches nothing.
+    fn way_free(&self, q: &Configuration, finger: u8, way: Vec<Vec<f64>>, clear: f64) -> PyResult<Vec<bool>> {
+        let task = self.check(q)?;
+        let way: Vec<_> =
+            way.iter().map(|joints| Ok(self.joints(finger, joints)?.1)).collect::<PyResult<_>>()?;
+        let (finger, all) = (to_finger(finger, q.0.joints.len())?, FingerSet::first(q.0.joints.len()));
+        let lone = task.clearance.lone_finger(finger, &q.0, all);
+        Ok(way.iter().map(|joints| lone.free(joints, TipRule::Clear(clear)).is_ok()).collect())
     }
 
     /// The configuration at a pose with every finger at rest and free.

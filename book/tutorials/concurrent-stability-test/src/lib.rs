@@ -119,7 +119,7 @@ fn room(contact: &GraspContact<'_>, force: &Vec3) -> f64 {
 fn slope(contact: &GraspContact<'_>) -> Result<f64, CallError> {
     match &contact.cone {
         Cone::Elliptic { mu, .. } => Ok(*mu),
-        Cone::Polyhedral(_) => {
+        Cone::Grained(_) | Cone::Polyhedral(_) => {
             let reason = "it knows round friction cones only; use `stability-test/linearised`".into();
             Err(CallError::Unsupported { plugin: ENTRY.id.into(), reason })
         }

@@ -27,7 +27,8 @@ pub enum Target<'a> {
 pub struct Reached {
     /// The last valid configuration: for a transfer with its drifted contacts.
     pub end: Configuration,
-    /// The fraction of the motion made, in [0, 1]; 1 exactly when the target was reached.
+    /// The fraction of the motion made, in [0, 1]; 1 exactly when the target was reached, 0 exactly where no
+    /// way was made. Of a transfer it is the share of the object's way.
     pub fraction: f64,
     /// Why it stopped short; `None` exactly when `fraction` is 1.
     pub stop: Option<Reason>,

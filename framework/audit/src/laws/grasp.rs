@@ -78,7 +78,9 @@ fn inside(contact: &GraspContact<'_>, f: &Vec3, m: f64) -> bool {
     let at = Vec3::new(f.dot(&t1), f.dot(&t2), m) / normal;
     // A convex set holds a point where no direction tells them apart; the directions are those of the point
     // and of the kit.
-    super::cone::directions().chain([at]).all(|w| at.dot(&w) <= support(&contact.cone, &w) + 1e-7 * w.norm())
+    super::cone::directions()
+        .chain([at])
+        .all(|w| at.dot(&w) <= support(&contact.cone, &contact.n_O, &w) + 1e-7 * w.norm())
 }
 
 /// No wrench of any cone has power against the twist.
@@ -90,7 +92,8 @@ fn twist_separates(grasp: &Grasp<'_>, v_O: &Vec3, w_O: &Vec3) -> Kept {
         let inward = -contact.n_O;
         let [t1, t2] = tangents(&inward);
         // The largest power of a wrench of the cone against the twist.
-        -inward.dot(&v) + support(&contact.cone, &-Vec3::new(v.dot(&t1), v.dot(&t2), w_O.dot(&inward)))
+        -inward.dot(&v)
+            + support(&contact.cone, &contact.n_O, &-Vec3::new(v.dot(&t1), v.dot(&t2), w_O.dot(&inward)))
     };
     let worst = grasp.contacts().iter().map(resists).fold(f64::NEG_INFINITY, f64::max);
     ensure("certificate", size > 0.0 && worst <= 1e-9 * size, || {

@@ -4,8 +4,8 @@ use super::chain::{Chain, chain_kept};
 use super::slip::Touch;
 use super::{Kept, broken, ensure, length};
 use regrasp_api::{
-    CallError, Configuration, Context, FingerIndex, FingerSet, Fingertip, Path, Reached, Reason, Slot, Tally,
-    Target, Vec3, angle_between, interpolate,
+    CallError, Configuration, Context, FingerIndex, FingerSet, Fingertip, Path, Pose, Reached, Reason, Slot,
+    Tally, Target, Task, Vec3, angle_between, interpolate,
 };
 
 /// A motion under judgement.
@@ -30,6 +30,32 @@ pub fn reached_kept(reached: &Reached) -> Kept {
     ensure("reached", fits, || match stop {
         None => format!("`stop: None` says that the target was reached, `fraction` is {fraction:.6}"),
         Some(reason) => format!("stopped by `{}` at the fraction {fraction:.6}", reason.name()),
+    })
+}
+
+/// Law `fraction`: 0 exactly where no way was made; of a transfer, the share of the object's way, to a tenth
+/// and a step.
+pub fn fraction_kept(task: &Task<'_>, from: &Configuration, to: &Target<'_>, reached: &Reached) -> Kept {
+    let (end, fraction) = (&reached.end, reached.fraction);
+    let still = end == from;
+    let fits = reached.is_complete() || still == (fraction == 0.0);
+    ensure("fraction", fits, || match still {
+        true => format!("it ends where it began, at the fraction {fraction:.6}"),
+        false => "it made some way, at the fraction 0".into(),
+    })?;
+    let Target::Transfer(X_HO) = to else { return Ok(()) };
+    let far = |a: &Pose, b: &Pose| (b.translation.vector - a.translation.vector).norm();
+    let turned = |a: &Pose, b: &Pose| angle_between(&a.rotation, &b.rotation);
+    let resolution = task.resolution;
+    // Of the two ways the one that has more steps.
+    let (step, turn) = (resolution.transfer_step, resolution.transfer_turn);
+    let ways = [(far(&from.X_HO, X_HO) / step, far(&from.X_HO, &end.X_HO) / step)]
+        .into_iter()
+        .chain([(turned(&from.X_HO, X_HO) / turn, turned(&from.X_HO, &end.X_HO) / turn)]);
+    let Some((whole, made)) = ways.max_by(|a, b| a.0.total_cmp(&b.0)) else { return Ok(()) };
+    let off = (made - fraction * whole).abs();
+    ensure("fraction", off <= 1.0 + 0.1 * whole, || {
+        format!("{:.3} of the object's way is made, the fraction is {fraction:.3}", made / whole)
     })
 }
 
@@ -98,7 +124,7 @@ pub fn states_kept(motion: &Motion<'_>, context: &mut Context<'_>) -> Kept {
             what: format!("after state {i} of {}: {}", inner + 1, fault.what),
             ..fault
         };
-        small_step(motion, &pair[0], &pair[1])
+        step_kept(motion.chain.task, motion.to, &pair[0], &pair[1])
             .and_then(|()| between(motion, &pair[0], &pair[1], moving))
             .map_err(at)
     })?;
@@ -160,20 +186,19 @@ fn lone_free(
 }
 
 /// Law `steps`: no step is longer than the task's resolution, but for rounding and the bend of the path.
-fn small_step(motion: &Motion<'_>, a: &Configuration, b: &Configuration) -> Kept {
-    /// By how much a step may be longer.
-    const SLACK: f64 = 2.0;
-    let resolution = motion.chain.task.resolution;
-    let (step, turn) = match motion.to {
+pub fn step_kept(task: &Task<'_>, to: &Target<'_>, a: &Configuration, b: &Configuration) -> Kept {
+    /// By how much a step may be longer, and rounding.
+    const SLACK: f64 = 2.0 + 1e-6;
+    let resolution = task.resolution;
+    let (step, turn) = match to {
         Target::Grasp(_) => (resolution.grasp_step, resolution.grasp_turn),
         Target::Transfer(_) => (resolution.transfer_step, resolution.transfer_turn),
         Target::Regrasp { .. } => (resolution.regrasp_step, f64::INFINITY),
     };
     let moved = (b.X_HO.translation.vector - a.X_HO.translation.vector).norm();
     let turned = angle_between(&a.X_HO.rotation, &b.X_HO.rotation);
-    let hand = motion.chain.task.hand;
-    let tip = |q: &Configuration, finger| hand.tip_center(finger, &q.joints[finger]);
-    let tips = match motion.to {
+    let tip = |q: &Configuration, finger| task.hand.tip_center(finger, &q.joints[finger]);
+    let tips = match to {
         Target::Regrasp { finger, .. } => (tip(b, *finger) - tip(a, *finger)).norm(),
         _ => 0.0,
     };

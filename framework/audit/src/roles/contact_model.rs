@@ -3,7 +3,7 @@
 use crate::auditor::{Key, bits};
 use crate::laws::{self, Kept, ensure};
 use crate::{Audited, input};
-use regrasp_api::{Cone, Contact, ContactModel, FingerIndex, MAX_FINGERS};
+use regrasp_api::{Cone, Contact, ContactModel, FingerIndex, MAX_FINGERS, Vec3};
 use serde_json::json;
 
 /// A friction a little smaller, whose cone must lie inside.
@@ -15,8 +15,8 @@ fn key(contact: &Contact) -> Key {
 }
 
 /// The laws of one cone, however it was asked for.
-fn cone_kept(cone: &Cone<'_>, again: &Cone<'_>, mu: f64) -> Kept {
-    laws::cone_valid(cone)?;
+fn cone_kept(cone: &Cone<'_>, n_O: &Vec3, again: &Cone<'_>, mu: f64) -> Kept {
+    laws::cone_valid(cone, n_O)?;
     laws::cone_within_friction(cone, mu)?;
     ensure("pure", format!("{cone:?}") == format!("{again:?}"), || {
         format!("the same call again answers otherwise: {cone:?} then {again:?}")
@@ -30,8 +30,13 @@ impl ContactModel for Audited<'_, dyn ContactModel + '_> {
             |model| model.cone(finger, contact, mu),
             || json!({ "finger": finger.0, "contact": input::contact(contact), "mu": mu }),
             |model, cone| {
-                cone_kept(cone, &model.cone(finger, contact, mu), mu)?;
-                laws::cone_inside("cone-monotone", &model.cone(finger, contact, LESS * mu), cone)
+                cone_kept(cone, &contact.n_O, &model.cone(finger, contact, mu), mu)?;
+                laws::cone_inside(
+                    "cone-monotone",
+                    &contact.n_O,
+                    &model.cone(finger, contact, LESS * mu),
+                    cone,
+                )
             },
         )
     }
@@ -42,9 +47,9 @@ impl ContactModel for Audited<'_, dyn ContactModel + '_> {
             |model| model.spinning_cone(finger, contact, mu),
             || json!({ "finger": finger.0, "contact": input::contact(contact), "mu": mu }),
             |model, cone| {
-                cone_kept(cone, &model.spinning_cone(finger, contact, mu), mu)?;
+                cone_kept(cone, &contact.n_O, &model.spinning_cone(finger, contact, mu), mu)?;
                 ensure("spinning-cone", !cone.carries_torsion(), || format!("{cone:?} carries torsion"))?;
-                laws::cone_inside("spinning-cone", cone, &model.cone(finger, contact, mu))
+                laws::cone_inside("spinning-cone", &contact.n_O, cone, &model.cone(finger, contact, mu))
             },
         )
     }

@@ -47,6 +47,7 @@ impl LocalPlanner for Audited<'_, dyn LocalPlanner + '_> {
             |_, reached, context| {
                 let path = stored.borrow();
                 laws::reached_kept(reached)?;
+                laws::fraction_kept(task, from, to, reached)?;
                 laws::refusal_counted(self.slot, reached, &context.tally)?;
                 let ground = Ground { mesh: &self.auditor.object.mesh, radius: self.auditor.radius };
                 let chain = Chain { task, ground, closure: 0.5 * 1.05 * task.tolerances.closure };

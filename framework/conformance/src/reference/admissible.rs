@@ -37,6 +37,12 @@ impl ContactModel for SoftCones {
     }
 }
 
+/// Whether a fingertip at the contact overlaps the object elsewhere.
+fn reaches_in(task: &Task<'_>, contact: &Contact) -> bool {
+    let radius = task.hand.fingertip_radius();
+    task.surface.project(&contact.tip_center(radius), Some(contact.facet)).distance < radius - 1e-7
+}
+
 /// Admits stable grasps without collision, whose contacts keep away from sharp edges.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Leavable;
@@ -54,6 +60,8 @@ impl Admissible for Leavable {
             Some(contact) if task.surface.edge_distance(contact) < task.resolution.edge_margin => {
                 return Ok(Some(Reason::Edge));
             }
+            // Where the object dents in, a ball at one place may reach into another.
+            Some(contact) if reaches_in(task, contact) => return Ok(Some(Reason::Collision)),
             Some(_) => TipRule::Touches,
             None => TipRule::Clear(task.resolution.clearance),
         };

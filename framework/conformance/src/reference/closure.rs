@@ -96,6 +96,20 @@ fn slice(contact: &GraspContact<'_>, outer: bool) -> Vec<[f64; 3]> {
         Cone::Polyhedral(edges) => {
             edges.iter().map(|e| [e.tangential[0], e.tangential[1], e.torsion]).collect()
         }
+        Cone::Grained(grain) => {
+            // The round slice of radius 1, stretched along and across.
+            let (t1, t2) = tangents(&-contact.n_O);
+            let round = Cone::Elliptic { mu: 1.0, gamma: grain.gamma };
+            let [(a, along), (b, across)] = grain.at(&contact.n_O);
+            let stretched = |[x, y, z]: [f64; 3]| {
+                let f = a * (along * x) + b * (across * y);
+                [f.dot(&t1), f.dot(&t2), z]
+            };
+            slice(&GraspContact { cone: round, ..contact.clone() }, outer)
+                .into_iter()
+                .map(stretched)
+                .collect()
+        }
         &Cone::Elliptic { mu: 0.0, gamma } => vec![[0.0, 0.0, gamma], [0.0, 0.0, -gamma]],
         &Cone::Elliptic { mu, gamma: 0.0 } => {
             let radius = if outer { mu / (PI / EDGES as f64).cos() } else { mu };

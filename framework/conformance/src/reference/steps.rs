@@ -38,6 +38,14 @@ pub(super) fn fault(
     if !task.stability.test(&grasp, &mut Hint::default(), context)?.is_stable() {
         return Ok(Some(Reason::Stability));
     }
+    let radius = task.hand.fingertip_radius();
+    for contact in q.contacts.iter().filter_map(|(_, contact)| contact.as_ref()) {
+        // Where the object dents in, a ball at one place may reach into another.
+        let projection = task.surface.project(&contact.tip_center(radius), Some(contact.facet));
+        if projection.distance < radius - 1e-6 {
+            return Ok(Some(Reason::Closure));
+        }
+    }
     let free = task.clearance.configuration_free(q, q.joints.fingers().collect(), true);
     Ok(free.is_err().then_some(Reason::Collision))
 }

@@ -119,6 +119,12 @@ impl<'a> Input<'a> {
 
     fn cone(self) -> Read<Cone<'static>> {
         let edges = self.get("edges");
+        let axis = self.get("axis_O");
+        if !axis.is_null() {
+            let mu = self.get("mu");
+            let mu = mu.numbers()?.try_into().or_else(|_| mu.wrong("a list of two numbers"))?;
+            return Ok(Cone::grained(&axis.vector()?, mu, self.get("gamma").number()?));
+        }
         if edges.is_null() {
             return Ok(Cone::Elliptic { mu: self.get("mu").number()?, gamma: self.get("gamma").number()? });
         }

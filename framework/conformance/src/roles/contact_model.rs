@@ -68,13 +68,20 @@ fn build(subject: &Subject<'_>) -> Finding<Box<dyn ContactModel>> {
     Ok(build(&subject.demands.settings, &Bench::free_sphere().parts())?)
 }
 
+/// Contacts all over a ball, on the six faces of a cube, where a projected grain may have no direction, and
+/// two at one place: on a sharp edge normals turn, and the place stays.
 fn contacts() -> Vec<Contact> {
     let mut random = random(1);
     let contact = |random: &mut Random| {
         let n_O = random.direction();
         Contact { facet: random.index(100) as u32, p_OC: n_O * 0.03, n_O }
     };
-    (0..12).map(|_| contact(&mut random)).collect()
+    let round: Vec<Contact> = (0..12).map(|_| contact(&mut random)).collect();
+    let faces = [Vec3::x(), Vec3::y(), Vec3::z()].into_iter().flat_map(|axis| [axis, -axis]);
+    let face = |(k, n_O): (usize, Vec3)| Contact { facet: k as u32, p_OC: n_O * 0.0225, n_O };
+    let edge = |n_O: Vec3| Contact { facet: 6, p_OC: Vec3::new(0.0225, 0.0225, 0.004), n_O };
+    let edges = [Vec3::new(1.0, 1.0, 0.0).normalize(), Vec3::new(0.6, 0.8, 0.0)].map(edge);
+    round.into_iter().chain(faces.enumerate().map(face)).chain(edges).collect()
 }
 
 /// Directions over the slice: along the axes, and spread.
@@ -89,23 +96,28 @@ fn place(contact: &Contact, mu: f64) -> String {
     format!("facet {}, normal {:.2?}, μ = {mu}", contact.facet, contact.n_O.as_slice())
 }
 
-/// Tries something on every contact and friction coefficient.
+/// Tries something on every contact, finger and friction coefficient.
 fn on_cones(
     subject: &Subject<'_>,
-    check: impl Fn(&dyn ContactModel, &Contact, f64) -> Result<(), Broken>,
+    check: impl Fn(&dyn ContactModel, FingerIndex, &Contact, f64) -> Result<(), Broken>,
 ) -> Finding {
     let model = build(subject)?;
-    for contact in contacts() {
+    for (i, contact) in contacts().iter().enumerate() {
+        // The kit's hand has four fingers.
+        let finger = FingerIndex((i % 4) as u8);
         for mu in FRICTIONS {
-            check(&*model, &contact, mu)
-                .map_err(|fault| Fault::Broken(format!("{}: {}", place(&contact, mu), fault.what)))?;
+            check(&*model, finger, contact, mu).map_err(|fault| {
+                Fault::Broken(format!("finger {}, {}: {}", finger.0, place(contact, mu), fault.what))
+            })?;
         }
     }
     Ok(())
 }
 
 fn cone_valid(subject: &Subject<'_>) -> Finding {
-    on_cones(subject, |model, contact, mu| laws::cone_valid(&model.cone(FINGER, contact, mu)))
+    on_cones(subject, |model, finger, contact, mu| {
+        laws::cone_valid(&model.cone(finger, contact, mu), &contact.n_O)
+    })
 }
 
 fn cone_monotone(subject: &Subject<'_>) -> Finding {
@@ -114,8 +126,8 @@ fn cone_monotone(subject: &Subject<'_>) -> Finding {
         for pair in FRICTIONS.windows(2) {
             for w in directions() {
                 // Values are copied out at once: a model may own one buffer of edges only for each friction.
-                let low = laws::support(&model.cone(FINGER, &contact, pair[0]), &w);
-                let high = laws::support(&model.cone(FINGER, &contact, pair[1]), &w);
+                let low = laws::support(&model.cone(FINGER, &contact, pair[0]), &contact.n_O, &w);
+                let high = laws::support(&model.cone(FINGER, &contact, pair[1]), &contact.n_O, &w);
                 ensure(high >= low - 1e-12, || {
                     format!("along {w:?} the cone shrinks from {low} to {high} as μ grows over {pair:?}")
                 })?;
@@ -126,16 +138,18 @@ fn cone_monotone(subject: &Subject<'_>) -> Finding {
 }
 
 fn cone_within_friction(subject: &Subject<'_>) -> Finding {
-    on_cones(subject, |model, contact, mu| laws::cone_within_friction(&model.cone(FINGER, contact, mu), mu))
+    on_cones(subject, |model, finger, contact, mu| {
+        laws::cone_within_friction(&model.cone(finger, contact, mu), mu)
+    })
 }
 
 /// The torsional radius of a patch: more than this is no fingertip's, whatever its material.
 const MOST_TORSION: f64 = 0.1;
 
 fn torsion_bounded(subject: &Subject<'_>) -> Finding {
-    on_cones(subject, |model, contact, mu| {
-        let cone = model.cone(FINGER, contact, mu);
-        let reach = [1.0, -1.0].map(|sign| laws::support(&cone, &Vec3::new(0.0, 0.0, sign)));
+    on_cones(subject, |model, finger, contact, mu| {
+        let cone = model.cone(finger, contact, mu);
+        let reach = [1.0, -1.0].map(|sign| laws::support(&cone, &contact.n_O, &Vec3::new(0.0, 0.0, sign)));
         let most = reach[0].max(reach[1]);
         laws::ensure("torsion-bounded", most <= MOST_TORSION, || {
             format!("a torque of {most:.3} N·m per newton; γ is a length in metres, at most {MOST_TORSION} m")
@@ -144,19 +158,20 @@ fn torsion_bounded(subject: &Subject<'_>) -> Finding {
 }
 
 fn spinning_cone(subject: &Subject<'_>) -> Finding {
-    on_cones(subject, |model, contact, mu| {
-        let (spinning, resting) = (model.spinning_cone(FINGER, contact, mu), model.cone(FINGER, contact, mu));
+    on_cones(subject, |model, finger, contact, mu| {
+        let (spinning, resting) = (model.spinning_cone(finger, contact, mu), model.cone(finger, contact, mu));
         // A cone at rest that is none is `cone-valid`'s matter.
-        if laws::cone_valid(&resting).is_err() {
+        if laws::cone_valid(&resting, &contact.n_O).is_err() {
             return Ok(());
         }
-        laws::cone_valid(&spinning)?;
+        laws::cone_valid(&spinning, &contact.n_O)?;
         laws::ensure("spinning-cone", !spinning.carries_torsion(), || {
             format!("{spinning:?} carries torsion")
         })?;
-        laws::cone_inside("spinning-cone", &spinning, &resting)?;
+        laws::cone_inside("spinning-cone", &contact.n_O, &spinning, &resting)?;
         // Who forgets what a contact keeps that spins is left with a frictionless one.
-        let lost = reach(&spinning) == 0.0 && reach(&resting.without_torsion()) > 1e-6;
+        let lost =
+            reach(&spinning, &contact.n_O) == 0.0 && reach(&resting.without_torsion(), &contact.n_O) > 1e-6;
         laws::ensure("spinning-cone", !lost, || {
             "it keeps no friction at all, though the cone without torsion has some".into()
         })
@@ -164,15 +179,15 @@ fn spinning_cone(subject: &Subject<'_>) -> Finding {
 }
 
 /// The largest tangential force.
-fn reach(cone: &Cone<'_>) -> f64 {
+fn reach(cone: &Cone<'_>, n_O: &Vec3) -> f64 {
     let ring = (0..32).map(|k| (std::f64::consts::TAU * f64::from(k) / 32.0).sin_cos());
-    ring.map(|(sin, cos)| laws::support(cone, &Vec3::new(cos, sin, 0.0))).fold(0.0, f64::max)
+    ring.map(|(sin, cos)| laws::support(cone, n_O, &Vec3::new(cos, sin, 0.0))).fold(0.0, f64::max)
 }
 
 /// The largest force along a tangent given in O.
 fn reach_along(cone: &Cone<'_>, contact: &Contact, direction_O: &Vec3) -> f64 {
     let [t1, t2] = tangents(&-contact.n_O);
-    laws::support(cone, &Vec3::new(direction_O.dot(&t1), direction_O.dot(&t2), 0.0))
+    laws::support(cone, &contact.n_O, &Vec3::new(direction_O.dot(&t1), direction_O.dot(&t2), 0.0))
 }
 
 /// A cone is a fact about the object: two contacts with all but the same normal have all but the same cone in
@@ -252,17 +267,18 @@ fn some_closed(model: &dyn ContactModel, contacts: usize) -> bool {
 fn model_pure(subject: &Subject<'_>) -> Finding {
     let (model, fresh) = (build(subject)?, build(subject)?);
     let contacts = contacts();
+    let count = contacts.len() * FRICTIONS.len();
+    let cone = |model: &dyn ContactModel, i: usize| {
+        let (contact, mu) = (&contacts[i / FRICTIONS.len()], FRICTIONS[i % FRICTIONS.len()]);
+        format!("{:?}", model.cone(FingerIndex((i % 4) as u8), contact, mu))
+    };
     // A fresh object that is asked in reverse order answers the same.
-    let cone =
-        |model: &dyn ContactModel, contact: &Contact| format!("{:?}", model.cone(FINGER, contact, 0.76));
-    let forward: Vec<String> = contacts.iter().map(|contact| cone(&*model, contact)).collect();
-    for (contact, before) in contacts.iter().zip(&forward).rev() {
-        ensure(cone(&*fresh, contact) == *before, || {
-            format!("{}: a fresh object, asked in another order, gives another cone", place(contact, 0.76))
+    let forward: Vec<String> = (0..count).map(|i| cone(&*model, i)).collect();
+    for (i, before) in forward.iter().enumerate().rev() {
+        ensure(cone(&*fresh, i) == *before, || {
+            let at = place(&contacts[i / FRICTIONS.len()], FRICTIONS[i % FRICTIONS.len()]);
+            format!("{at}: a fresh object, asked in another order, gives another cone")
         })?;
     }
-    pure(contacts.len() * FRICTIONS.len(), |i| {
-        let (contact, mu) = (&contacts[i / FRICTIONS.len()], FRICTIONS[i % FRICTIONS.len()]);
-        Ok::<_, Fault>((format!("{:?}", model.cone(FINGER, contact, mu)), model.fewest_contacts()))
-    })
+    pure(count, |i| Ok::<_, Fault>((cone(&*model, i), model.fewest_contacts())))
 }

@@ -1,7 +1,7 @@
 //! What of a URDF has no say: every element and attribute is used, listed with its line, or refused.
 
 use crate::error::RobotFault as Fault;
-use crate::xml::{EXPAND, Element, line, places};
+use crate::xml::{EXPAND, Element, children, line, places};
 use std::collections::BTreeMap;
 
 /// What was not used.
@@ -92,6 +92,13 @@ fn visit(element: &Element<'_>, lines: &mut Lines) -> Result<(), Fault> {
         }
         let what = format!("`{name}` of <{tag}>");
         lines.note(what, known.idle.contains(&name), nearest(name, known.attributes), line(element));
+    }
+    if let Some(second) = children(element, "inertial").nth(1) {
+        lines
+            .unknown
+            .entry("a second <inertial> in one <link>: the first counts".into())
+            .or_default()
+            .push(line(&second));
     }
     let inside = element.children().filter(|child| child.is_element());
     for child in inside {

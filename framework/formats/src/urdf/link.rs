@@ -19,9 +19,10 @@ pub(super) fn link(element: &Element<'_>) -> Result<Link, Fault> {
     })
 }
 
-/// The mass (kg) that `<inertial>` gives.
+/// The mass (kg) that the first `<inertial>` gives; ROS's own reader takes the first, too, and the ledger
+/// tells of others.
 fn mass(element: &Element<'_>) -> Result<Option<f64>, Fault> {
-    let Some(inertial) = child(element, "inertial")? else { return Ok(None) };
+    let Some(inertial) = children(element, "inertial").next() else { return Ok(None) };
     child(&inertial, "mass")?.map_or(Ok(None), |mass| number(&mass, "value"))
 }
 

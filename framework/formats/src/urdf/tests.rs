@@ -75,6 +75,14 @@ fn what_stands_twice_is_refused() {
     assert!(
         collision("<parent link=\"a\"/><parent link=\"c\"/><child link=\"b\"/>").contains("second <parent>")
     );
+    // As it is published for some hands; what counts is told.
+    let masses = robot(
+        "<link name=\"a\"><inertial><mass value=\"2\"/></inertial>\n<inertial><mass \
+         value=\"3\"/></inertial></link>",
+    );
+    let masses = parse_urdf(&masses).unwrap();
+    assert_eq!(masses.links[0].mass, Some(2.0));
+    assert_eq!(masses.remarks, ["a second <inertial> in one <link>: the first counts (line 3)"]);
     let two = robot(
         "<link name=\"a\"><collision><geometry><sphere radius=\"0.01\"/>\n<box size=\"1 1 \
          1\"/></geometry></collision></link>",

@@ -2,7 +2,7 @@
 
 use crate::force::{ContactForce, Friction};
 use nalgebra::{SMatrix, Vector4, Vector6};
-use regrasp_api::{EffortBounds, MAX_FINGER_JOINTS, Vec3, any_orthogonal};
+use regrasp_api::{EffortBounds, MAX_FINGER_JOINTS, Vec3};
 
 /// What one contact exerts, in N: (f_n, f_t1, f_t2, m/λ), with λ = γ/μ the friction's lever; the last is 0
 /// where there is no torsion.
@@ -16,7 +16,8 @@ pub type Exerted = Vector4<f64>;
 pub struct Bearing {
     /// Wrench per unit of each coordinate: force, and torque about the centre of mass over the length.
     pub(crate) map: SMatrix<f64, 6, 4>,
-    /// Force directions (inward normal and two tangents) in O.
+    /// Force directions (inward normal and two tangents) in O; a tangent along which there is less friction
+    /// is as much shorter.
     basis: [Vec3; 3],
     lever: f64,
     pub(crate) mu: f64,
@@ -64,8 +65,10 @@ impl Bearing {
         press: &Press,
         length: f64,
     ) -> Self {
-        let tangent = any_orthogonal(n_O);
-        let basis = [-n_O, tangent, n_O.cross(&tangent)];
+        // Forces across a grain count in units in which the cone is round.
+        let (mu, [t1, t2]) = (friction.most(), friction.tangents(n_O));
+        let unit = |(tangent, own): (Vec3, f64)| if own == mu { tangent } else { tangent * (own / mu) };
+        let basis = [-n_O, unit(t1), unit(t2)];
         let lever = if friction.has_torsion() { friction.lever() } else { 0.0 };
         let mut map = SMatrix::<f64, 6, 4>::zeros();
         for (column, force) in basis.iter().enumerate() {
@@ -87,7 +90,7 @@ impl Bearing {
         let steepest = rows[..count].iter().map(|row| row[0].abs()).fold(1.0 / most, f64::max);
         let start = if steepest > 0.0 { (0.5 / steepest).min(UNBOUNDED.1) } else { UNBOUNDED.0 };
         let most = if count == 0 { most.min(UNBOUNDED.1) } else { most };
-        Self { map, basis, lever, mu: friction.mu, rows, count, most, start }
+        Self { map, basis, lever, mu, rows, count, most, start }
     }
 
     /// The rows a of the efforts' bounds |a · x| ≤ 1.

@@ -4,7 +4,7 @@ use super::bearing::{Bearing, Press, stacked};
 use super::newton::{Balanced, Forces, Search};
 use crate::force::Friction;
 use nalgebra::{Cholesky, Matrix6, Vector6};
-use regrasp_api::{Cone, FingerIndex, Grasp, Hint, MAX_FINGERS, Vec3};
+use regrasp_api::{FingerIndex, Grasp, Hint, MAX_FINGERS, Vec3};
 
 /// Vertices of the two icosahedra that enclose the disturbances.
 const VERTICES: usize = 24;
@@ -67,10 +67,9 @@ impl HeldLoad {
             if Some(contact.finger) == lifted {
                 continue;
             }
-            let Cone::Elliptic { mu, gamma } = contact.cone else { return None };
+            let friction = Friction::of(&contact.cone)?.scaled(part, torsion_part);
             let place = (&(contact.p_OC - self.p_OCm), &contact.n_O);
             let efforts = grasp.efforts(i).copied().unwrap_or_default();
-            let friction = Friction { mu: mu * part, gamma: gamma * torsion_part };
             bearings.all[bearings.count] = Bearing::new(place, &friction, &efforts, &self.press, self.length);
             bearings.count += 1;
         }

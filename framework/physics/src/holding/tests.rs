@@ -12,7 +12,7 @@ const PRESS: Press = Press { max_normal_force: None, effort_share: 1.0 };
 
 /// `count` contacts on a ball of 30 mm, three or four joints behind each, and a weight.
 fn random_grasp(random: &mut Random, count: usize, gamma: f64) -> (Vec<Bearing>, Vector6<f64>) {
-    let friction = Friction { mu: random.range(0.2, 1.0), gamma };
+    let friction = Friction::round(random.range(0.2, 1.0), gamma);
     let contact = |random: &mut Random| {
         let n_O = random.direction();
         let joints = 3 + random.index(2);

@@ -135,7 +135,7 @@ pub fn plan(motion: &Motion, hand: &dyn Hand) -> Plan {
         claims: Claims {
             contact: ContactClaim {
                 model: "contact-model/pcwf".into(),
-                cone: Some(ConeClaim { mu: 0.8, gamma: 0.0 }),
+                cone: Some(ConeClaim::round(0.8, 0.0)),
                 cones: vec![],
             },
             criterion: Criterion::Closure,

@@ -20,15 +20,17 @@ macro_rules! built_in {
 /// The scenarios, the paper's three problems first.
 pub const SCENARIOS: &[BuiltIn] = built_in!(
     "": "sphere", "cubic", "ellip-obst", "sphere-tilt", "sphere-free", "cube-free", "ellipsoid-free",
-    "sphere-points", "sphere-soft", "sphere-five", "ring", "bracket", "baton",
+    "sphere-points", "free-box-sphere", "free-box-ellipsoid", "free-box-cube", "free-box-sphere-rolling",
+    "free-box-ellipsoid-rolling", "free-box-cube-rolling", "sphere-soft", "sphere-five", "ring", "bracket",
+    "baton",
     "allegro-ball", "allegro-cube", "three-finger-soft",
     "rgmc-a1-60", "rgmc-a1-80", "rgmc-a1-100", "rgmc-b1",
 );
 
 /// The hands.
 pub const HANDS: &[BuiltIn] = built_in!(
-    "hands/": "four-finger", "five-finger", "three-finger", "free-fingertips", "free-points", "allegro-like",
-    "trifinger-like",
+    "hands/": "four-finger", "five-finger", "three-finger", "free-fingertips", "free-points", "box-points",
+    "box-tips", "allegro-like", "trifinger-like",
 );
 
 /// The built-in file with this name.

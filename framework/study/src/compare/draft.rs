@@ -1,7 +1,7 @@
 //! From what is asked for to a study: variants, their plugins built for every scenario, refusals before the
 //! first run.
 
-use super::{LeftOut, Machine, RunKey, Seeds, Shard, Study, StudyFormat, StudyScenario, Variant};
+use super::{Hypotheses, LeftOut, Machine, RunKey, Seeds, Shard, Study, StudyFormat, StudyScenario, Variant};
 use super::{STUDY_VERSION, StudyError};
 use regrasp_api::Slot;
 use regrasp_host::{Choices, HostError, Registry};
@@ -114,6 +114,8 @@ pub struct Draft {
     pub time_limit_s: Option<f64>,
     /// Leaves out what a variant's plugins do not support, instead of refusing the study.
     pub skip_unsupported: bool,
+    /// Which hypotheses are to be tested.
+    pub hypotheses: Hypotheses,
 }
 
 /// A study whose plugins are built.
@@ -165,6 +167,7 @@ pub fn prepare<'a>(
         left_out,
         seeds: draft.seeds,
         time_limit_s: draft.time_limit_s,
+        hypotheses: draft.hypotheses,
         command: draft.command,
     };
     Ok(Prepared { study, setups })

@@ -109,6 +109,19 @@ pub enum StudyError {
     /// Parts do not make a whole.
     #[error("{0}")]
     Merge(String),
+    /// Two studies have no scenario, variant and seed in common.
+    #[error(
+        "`{}` and `{}` have no scenario, variant and seed in common, by their names; compare studies of the \
+         same command",
+        folder.display(),
+        older.display()
+    )]
+    NothingInCommon {
+        /// The folder of the newer study.
+        folder: PathBuf,
+        /// The folder of the older one.
+        older: PathBuf,
+    },
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -142,6 +155,9 @@ impl Refuse for StudyError {
                 .file(path.display())
                 .line(Some(*line))
                 .remedy("delete the line, and its run will be made again"),
+            Self::NothingInCommon { folder, .. } => {
+                Refusal::new("nothing-in-common", self).file(folder.display())
+            }
             Self::Merge(_) => Refusal::new("merge", self),
             Self::Write(error) => error.refusal(),
             Self::Io { path, .. } => Refusal::new("io", self).file(path.display()),

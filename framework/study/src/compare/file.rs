@@ -1,6 +1,6 @@
 //! Study files: comparisons that are too long for a command line, or that are to be kept.
 
-use super::{Change, VariantDraft, factorial};
+use super::{Change, DEFAULT_BAND, Hypotheses, MeasureName, Pairs, VariantDraft, factorial};
 use regrasp_api::{Refuse, Slot};
 use regrasp_host::{PresetChange, PresetLine, Registry, preset, slot_by_name};
 use regrasp_run::scenario::{self, Document, PluginTable, PluginTables, Scenario, ScenarioError, key_path};
@@ -37,6 +37,14 @@ pub struct StudyFile {
     #[schemars(range(min = 1, max = 10_000_000))]
     #[schemars(example = 500)]
     pub max_nodes: Option<u64>,
+    /// Which variants are compared: each with the first, or each with each; `baseline` where absent.
+    pub pairs: Option<Pairs>,
+    /// What they are compared in; everything that the runs have where empty.
+    pub measures: Vec<MeasureName>,
+    /// Differences within this share of the first variant's median, in percent, count as practically none; 10
+    /// where absent.
+    #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "1"))]
+    pub equivalence: Option<f64>,
     /// Plugins for all variants, where these do not choose others.
     pub plugins: PluginTables,
     /// Factors: all combinations of their levels are compared. The first level of each makes the baseline.
@@ -116,6 +124,8 @@ pub struct StudyRequest {
     pub time_limit_s: Option<f64>,
     /// Most nodes to generate for each goal.
     pub max_nodes: Option<u64>,
+    /// Which hypotheses are tested.
+    pub hypotheses: Hypotheses,
 }
 
 /// Reads a study file.
@@ -140,6 +150,11 @@ pub fn load_study(path: &Path, registry: &Registry) -> Result<StudyRequest, Scen
         first_seed: content.first_seed,
         time_limit_s: content.time_limit,
         max_nodes: content.max_nodes,
+        hypotheses: Hypotheses {
+            pairs: content.pairs.unwrap_or_default(),
+            measures: content.measures,
+            band: content.equivalence.map_or(DEFAULT_BAND, |percent| 1e-2 * percent),
+        },
     })
 }
 

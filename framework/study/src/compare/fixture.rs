@@ -41,9 +41,24 @@ pub fn study(variants: &[&str]) -> Study {
         varied: vec![Slot::Sampler],
         variants: variants.iter().map(variant).collect(),
         left_out: Vec::new(),
+        hypotheses: Hypotheses::default(),
         seeds: Seeds { first: 0, count: 12 },
         time_limit_s: None,
     }
+}
+
+/// The same scenarios with all combinations of two factors, samplers and strategies.
+pub fn factorial(samplers: &[&str], strategies: &[&str]) -> Study {
+    let names: Vec<String> =
+        samplers.iter().flat_map(|a| strategies.iter().map(move |b| format!("{a} + {b}"))).collect();
+    let mut study = study(&names.iter().map(String::as_str).collect::<Vec<_>>());
+    study.varied = vec![Slot::Sampler, Slot::GraphStrategy];
+    for variant in &mut study.variants {
+        let (sampler, strategy) = variant.name.split_once(" + ").unwrap();
+        let levels = [(Slot::Sampler, sampler.to_owned()), (Slot::GraphStrategy, strategy.to_owned())];
+        variant.levels = levels.into();
+    }
+    study
 }
 
 /// The run of a key, solved and verified after this time.

@@ -167,8 +167,9 @@ fn resume(folder: &Path, study: &mut Study) -> Result<(), StudyError> {
         let program = difference.starts_with("`versions.");
         return Err(StudyError::OtherStudy { folder: folder.to_owned(), difference, program });
     }
-    let machines = std::mem::replace(study, begun).machines;
-    study.add_machines(machines);
+    let asked = std::mem::replace(study, begun);
+    study.add_machines(asked.machines);
+    study.hypotheses = asked.hypotheses;
     Ok(())
 }
 

@@ -5,6 +5,7 @@
 //! [`execute`] makes its runs and keeps each as soon as it has ended, [`Folder::finish`] writes the results.
 //! Parts of a study, made elsewhere, are joined by [`merge`].
 
+mod against;
 mod analysis;
 mod begun;
 mod csv;
@@ -12,18 +13,23 @@ mod derived;
 mod draft;
 mod error;
 mod execute;
+mod family;
+mod figure;
 mod file;
 mod fingerprint;
 #[cfg(test)]
 mod fixture;
 mod folder;
+mod hypotheses;
 mod isolate;
 mod journal;
 mod machinery;
+mod measure;
 mod merge;
 pub mod ompl;
 mod one_run;
 mod paper_table;
+mod question;
 mod record;
 pub mod report;
 mod results;
@@ -34,20 +40,27 @@ pub mod summary;
 mod timed;
 mod worker;
 
+pub use against::*;
 pub use analysis::*;
 pub use begun::BEGUN;
 pub use draft::*;
 pub use error::*;
 pub use execute::*;
+pub use family::*;
+pub use figure::*;
 pub use file::*;
 pub use fingerprint::*;
 pub use folder::*;
+pub use hypotheses::*;
 pub use isolate::*;
 pub use journal::JOURNAL;
 pub use machinery::make_run;
+pub use measure::*;
 pub use merge::*;
 pub use one_run::*;
 pub use paper_table::*;
+pub use question::Question;
+use question::row_horizon_s;
 pub use record::*;
 pub use results::*;
 pub use study::*;

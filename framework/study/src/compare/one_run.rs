@@ -2,7 +2,7 @@
 
 use super::{Certified, Counts, MotionFigures, RunRecord, RunStatus, Times};
 use regrasp_api::{CallError, Configuration, Hand, JointKind, angle_between};
-use regrasp_plan::{Extreme, Motion, StoppedBy};
+use regrasp_plan::{Extreme, Holds, Motion, StoppedBy};
 use regrasp_planner::Status;
 use regrasp_run::{Run, RunError};
 use std::collections::BTreeMap;
@@ -99,11 +99,17 @@ fn certified(run: &Run) -> Option<Certified> {
     let figure = |of: fn(&regrasp_plan::PlanCertificate) -> &Option<Extreme>| {
         value(of(certificate?)).filter(|x| x.is_finite())
     };
+    let holds = certificate.and_then(|certificate| certificate.holds.as_ref());
+    let held = |of: fn(&Holds) -> Option<f64>| holds.and_then(of).filter(|x| x.is_finite());
     Some(Certified {
         margin: figure(|certificate| &certificate.closure_margin),
         clearance_m: figure(|certificate| &certificate.clearance),
         slip_m: figure(|certificate| &certificate.slip),
         closure_m: figure(|certificate| &certificate.closure_residual),
+        holds_friction: held(|holds| Some(holds.friction.value)),
+        holds_mass_kg: held(|holds| Some(holds.mass.value)),
+        holds_force_n: held(|holds| Some(holds.disturbance.value)),
+        effort_share: held(|holds| holds.effort.as_ref().map(|effort| effort.value)),
         failed_checks: verdict.failures().map(|check| check.name.to_owned()).collect(),
     })
 }

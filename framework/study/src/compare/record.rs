@@ -120,6 +120,18 @@ pub struct Certified {
     pub slip_m: Option<f64>,
     /// Largest distance between a holding fingertip and the surface (m).
     pub closure_m: Option<f64>,
+    /// The smallest coefficient of friction at which every grasp still bears what it must (no unit).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holds_friction: Option<f64>,
+    /// The largest mass of the object that every grasp carries (kg).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holds_mass_kg: Option<f64>,
+    /// The largest disturbing force, in any direction, that every grasp withstands (N).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holds_force_n: Option<f64>,
+    /// The largest share of its limit that a joint's effort takes (no unit).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effort_share: Option<f64>,
     /// The names of the checks that the plan fails; empty for a plan that is right.
     pub failed_checks: Vec<String>,
 }

@@ -110,7 +110,7 @@ fn motion_columns() -> [Column; 9] {
     ]
 }
 
-fn certified_columns() -> [Column; 5] {
+fn certified_columns() -> [Column; 9] {
     let of = |name: &str, figure: fn(&Certified) -> String| {
         column(name, move |run: &RunRecord, _: &Plugins| {
             run.certified.as_ref().map(figure).unwrap_or_default()
@@ -121,6 +121,10 @@ fn certified_columns() -> [Column; 5] {
         of("clearance_m", |certified| number(certified.clearance_m)),
         of("slip_m", |certified| number(certified.slip_m)),
         of("closure_m", |certified| number(certified.closure_m)),
+        of("holds_friction", |certified| number(certified.holds_friction)),
+        of("holds_mass_kg", |certified| number(certified.holds_mass_kg)),
+        of("holds_force_n", |certified| number(certified.holds_force_n)),
+        of("effort_share", |certified| number(certified.effort_share)),
         of("failed_checks", |certified| certified.failed_checks.join(" ")),
     ]
 }

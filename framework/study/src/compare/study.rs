@@ -1,6 +1,6 @@
 //! What a study is: everything that is needed to repeat it, the content of `study.json`.
 
-use super::RunRecord;
+use super::{Hypotheses, RunRecord};
 use regrasp_api::{Problem, Slot};
 use regrasp_plan::PluginChoice;
 use regrasp_run::scenario::PaperFigures;
@@ -52,6 +52,9 @@ pub struct Study {
     pub seeds: Seeds,
     /// Most seconds for one run; none where absent.
     pub time_limit_s: Option<f64>,
+    /// Which hypotheses are tested.
+    #[serde(default)]
+    pub hypotheses: Hypotheses,
 }
 
 /// A scenario of a study.
@@ -226,8 +229,8 @@ impl Study {
     /// What tells this study from another one, in words; `None` where both are the same: the same results but
     /// for times.
     ///
-    /// The command counts for nothing, as there is more than one way to say the same, nor do machines and the
-    /// time of the beginning.
+    /// The command counts for nothing, as there is more than one way to say the same, nor do machines, the
+    /// time of the beginning, and the hypotheses: they change no run.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let names = |study: &Self| {
             json!({
@@ -237,7 +240,13 @@ impl Study {
             })
         };
         let all = |study: &Self| {
-            let own = Self { command: Vec::new(), machines: Vec::new(), started_s: 0, ..study.clone() };
+            let own = Self {
+                command: Vec::new(),
+                machines: Vec::new(),
+                started_s: 0,
+                hypotheses: Hypotheses::default(),
+                ..study.clone()
+            };
             serde_json::to_value(own).expect("a study is plain data with text keys")
         };
         // What a user thinks of first comes first.

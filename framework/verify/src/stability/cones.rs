@@ -1,17 +1,18 @@
-//! Closure of contacts whose cones the plan records one by one: round ones as they are where all of a grasp
-//! are round, otherwise cones of edges, and round ones by edges inside them.
+//! Closure, or equilibrium, of contacts whose cones the plan records one by one: elliptic ones as they are
+//! where all of a grasp are elliptic, otherwise cones of edges, and elliptic ones by edges inside them.
 //!
 //! The edges' wrenches span all of space positively, which is closure, exactly if they have rank 6 and some
 //! positive combination of all of them is zero (A. J. Goldman, A. W. Tucker, "Polyhedral convex cones",
 //! 1956). Such a combination is a proof that arithmetic can check, whoever found it.
 
 use super::force::{self, Contact};
-use super::socp;
+use super::load::LoadCheck;
+use super::{edge_load, socp};
 use crate::touch::Touch;
 use crate::track::Leg;
 use crate::verdict::{Check, Gauge, Side};
 use nalgebra::{Cholesky, Matrix6, Vector6};
-use regrasp_api::{Cone, ConeEdge, MAX_FINGERS, Vec3, tangents};
+use regrasp_api::{Cone, ConeEdge, MAX_FINGERS, Rotation, Vec3, tangents};
 use regrasp_plan::{Claims, ConeRecord, Criterion, EdgeRecord, Extreme, HoldsAt, Place};
 
 /// The least share of an edge in a proof, the shares of all summing to 1.
@@ -20,8 +21,8 @@ const LEAST_SHARE: f64 = 1e-8;
 const LEAST_SINGULAR: f64 = 1e-6;
 /// The part of the solver's least share below which carried shares are no longer taken.
 const DWINDLED: f64 = 0.4;
-/// Grasps not proved stable after which no more are looked at: the plan is refused anyway.
-const MOST_FAILURES: usize = 100;
+/// Grasps of a stretch not proved stable after which no more are looked at: the plan is refused anyway.
+const MOST_FAILURES: usize = 20;
 
 /// Follows the grasp along the plan, state by state: between two of them no cones are recorded.
 pub(crate) struct ConesCheck {
@@ -36,14 +37,24 @@ pub(crate) struct ConesCheck {
     /// The smallest margin.
     worst: Option<Extreme>,
     failures: usize,
+    /// What must be held where the plan claims equilibrium, not closure.
+    load: Option<LoadCheck>,
 }
 
 impl ConesCheck {
-    /// `None` where the plan records no cones, or claims more than closure.
-    pub(crate) fn new(claims: &Claims) -> Option<Self> {
+    /// `None` where the plan records no cones, or claims more than closure or equilibrium; for an object of
+    /// this weight (N, in H).
+    pub(crate) fn new(claims: &Claims, weight_H: Vec3) -> Option<Self> {
         let cones = &claims.contact.cones;
-        let applies = claims.contact.cone.is_none() && !cones.is_empty();
-        (applies && claims.criterion == Criterion::Closure).then(|| Self {
+        if claims.contact.cone.is_some() || cones.is_empty() {
+            return None;
+        }
+        let load = match &claims.criterion {
+            Criterion::Closure => None,
+            Criterion::Equilibrium(load) => Some(LoadCheck::new(load, weight_H, claims.margin.length)?),
+            _ => return None,
+        };
+        Some(Self {
             gauge: Gauge::new("stability", "share", Side::Above, LEAST_SHARE),
             cones: cones.iter().map(cone).collect(),
             center_O: claims.margin.center_O.into(),
@@ -52,11 +63,18 @@ impl ConesCheck {
             carried_round: None,
             worst: None,
             failures: 0,
+            load,
         })
     }
 
-    /// Takes in a state with the contacts of the fingers that hold there.
-    pub(crate) fn state(&mut self, leg: &Leg<'_>, state: usize, touches: &[Option<Touch>; MAX_FINGERS]) {
+    /// Takes in a state with the object's orientation and the contacts of the fingers that hold there.
+    pub(crate) fn state(
+        &mut self,
+        leg: &Leg<'_>,
+        state: usize,
+        R_HO: &Rotation,
+        touches: &[Option<Touch>; MAX_FINGERS],
+    ) {
         if self.failures >= MOST_FAILURES {
             return;
         }
@@ -64,9 +82,12 @@ impl ConesCheck {
             let note = Some("a contact without a recorded cone".into());
             return self.gauge.note(f64::NAN, || Place { note, ..leg.at(state) });
         };
+        if self.load.is_some() {
+            return self.state_load(leg, state, R_HO, &held);
+        }
         let found = match self.round(&held) {
             Some(contacts) => self.prove_round(&contacts),
-            None => self.prove(&self.columns(&held)).map(|proof| (proof.least, proof.margin())),
+            None => self.prove(&self.columns(&held).concat()).map(|proof| (proof.least, proof.margin())),
         };
         match found {
             Some((room, margin)) => {
@@ -81,6 +102,18 @@ impl ConesCheck {
                 self.worst = Some(Extreme::new(0.0, leg.at(state), HoldsAt::EveryState));
             }
         }
+    }
+
+    /// Whether the contacts hold the claimed load; closure margins do not apply.
+    fn state_load(&mut self, leg: &Leg<'_>, state: usize, R_HO: &Rotation, held: &[(Touch, Cone<'_>)]) {
+        let (round, columns) = (self.round(held), self.columns(held));
+        let Some(load) = &mut self.load else { return };
+        let found = match round {
+            Some(contacts) => load.prove(&contacts, R_HO),
+            None => edge_load::prove(&columns, load, R_HO),
+        };
+        self.failures += usize::from(found.is_err());
+        self.gauge.note(found.unwrap_or_else(|slack| slack), || leg.at(state));
     }
 
     /// The contacts that hold, with their cones; `None` where one has no cone.
@@ -103,14 +136,8 @@ impl ConesCheck {
 
     /// The contacts, where all their cones are round.
     fn round(&self, held: &[(Touch, Cone<'_>)]) -> Option<Vec<Contact>> {
-        let contact = |(touch, cone): &(Touch, Cone<'_>)| match *cone {
-            Cone::Elliptic { mu, gamma } => Some(Contact {
-                r: (touch.p_OC - self.center_O) / self.length,
-                n: -touch.n_O,
-                mu,
-                gamma: gamma / self.length,
-            }),
-            Cone::Polyhedral(_) => None,
+        let contact = |(touch, cone): &(Touch, Cone<'_>)| {
+            Contact::new((touch.p_OC - self.center_O) / self.length, -touch.n_O, cone, self.length)
         };
         held.iter().map(contact).collect()
     }
@@ -130,19 +157,19 @@ impl ConesCheck {
         Some((proof.slack, force::margin(contacts, &proof)))
     }
 
-    /// The wrenches of all edges, torques over the length.
-    fn columns(&self, held: &[(Touch, Cone<'_>)]) -> Vec<Vector6<f64>> {
-        let mut columns = Vec::new();
-        for (touch, cone) in held {
+    /// The wrenches of each contact's edges, torques over the length.
+    fn columns(&self, held: &[(Touch, Cone<'_>)]) -> Vec<Vec<Vector6<f64>>> {
+        let of_contact = |(touch, cone): &(Touch, Cone<'_>)| {
             let (r, n) = ((touch.p_OC - self.center_O) / self.length, -touch.n_O);
             let [t1, t2] = tangents(&n);
-            columns.extend(edges(cone).iter().map(|edge| {
+            let wrench = |edge: &ConeEdge| {
                 let f = n + t1 * edge.tangential[0] + t2 * edge.tangential[1];
                 let m = r.cross(&f) + n * (edge.torsion / self.length);
                 Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z)
-            }));
-        }
-        columns
+            };
+            edges(cone, &n).iter().map(wrench).collect()
+        };
+        held.iter().map(of_contact).collect()
     }
 
     /// A proof from the carried shares, else (or where they have dwindled) from the solver's.
@@ -158,6 +185,15 @@ impl ConesCheck {
         let proof = prove(columns, &socp::best_shares(columns)?)?;
         self.carried = Some((proof.shares.clone(), proof.least));
         Some(proof)
+    }
+
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, later: Self) {
+        self.gauge.join(later.gauge);
+        let is_worse = |later: &Extreme| self.worst.as_ref().is_none_or(|worst| later.value < worst.value);
+        if later.worst.as_ref().is_some_and(is_worse) {
+            self.worst = later.worst;
+        }
     }
 
     /// The smallest margin, for the certificate.
@@ -213,20 +249,29 @@ fn prove(columns: &[Vector6<f64>], shares: &[f64]) -> Option<Proof> {
     proved.then_some(Proof { shares, least, singular })
 }
 
-/// The edges of a cone; of a round one, edges on its surface: 48 round it, in steps of torsion as fine.
-fn edges(cone: &Cone<'_>) -> Vec<ConeEdge> {
+/// The edges of a cone at the inward normal `n`; of an elliptic one, edges on its surface: 48 round it, in
+/// steps of torsion as fine.
+fn edges(cone: &Cone<'_>, n: &Vec3) -> Vec<ConeEdge> {
     const ROUND: usize = 48;
     const LEVELS: i32 = 12;
-    let (mu, gamma) = match cone {
+    let gamma = match cone {
         Cone::Polyhedral(edges) => return edges.to_vec(),
-        Cone::Elliptic { mu, gamma } => (*mu, *gamma),
+        Cone::Elliptic { gamma, .. } => *gamma,
+        Cone::Grained(grain) => grain.gamma,
+    };
+    let [t1, t2] = tangents(n);
+    let contact = Contact::new(Vec3::zeros(), *n, cone, 1.0);
+    // From the unit circle to the largest tangential forces.
+    let rim = |x: f64, y: f64| {
+        let f = contact.as_ref().map_or(Vec3::zeros(), |contact| contact.stretch(&(t1 * x + t2 * y)));
+        [f.dot(&t1), f.dot(&t2)]
     };
     let levels = if gamma > 0.0 { -LEVELS..=LEVELS } else { 0..=0 };
     let level = |level: i32| {
         let (sin, cos) = (f64::from(level) / f64::from(LEVELS) * std::f64::consts::FRAC_PI_2).sin_cos();
         (0..ROUND).map(move |k| {
             let (y, x) = (std::f64::consts::TAU * k as f64 / ROUND as f64).sin_cos();
-            ConeEdge { tangential: [mu * cos * x, mu * cos * y], torsion: gamma * sin }
+            ConeEdge { tangential: rim(cos * x, cos * y), torsion: gamma * sin }
         })
     };
     levels.flat_map(level).collect()
@@ -235,7 +280,7 @@ fn edges(cone: &Cone<'_>) -> Vec<ConeEdge> {
 fn cone(record: &ConeRecord) -> Cone<'static> {
     let edge = |edge: &EdgeRecord| ConeEdge { tangential: edge.tangential, torsion: edge.torsion };
     match record {
-        ConeRecord::Elliptic(cone) => Cone::Elliptic { mu: cone.mu, gamma: cone.gamma },
+        ConeRecord::Elliptic(cone) => cone.cone(),
         ConeRecord::Polyhedral(edges) => Cone::Polyhedral(edges.iter().map(edge).collect()),
     }
 }
@@ -249,9 +294,9 @@ mod tests {
         let contact = |k: usize| {
             let (sin, cos) = (std::f64::consts::TAU * k as f64 / count as f64).sin_cos();
             let n_O = Vec3::new(cos, sin, 0.0);
-            let cone = Cone::grained(&n_O, &Vec3::z(), mu, 0.0);
+            let cone = Cone::grained(&Vec3::z(), mu, 0.0);
             let [t1, t2] = tangents(&-n_O);
-            edges(&cone)
+            edges(&cone, &-n_O)
                 .into_iter()
                 .map(move |edge| {
                     let f = -n_O + t1 * edge.tangential[0] + t2 * edge.tangential[1];
@@ -276,6 +321,33 @@ mod tests {
         assert!(closes(&columns(3, [0.0, 0.4])).is_none());
         assert!(closes(&columns(3, [0.6, 0.0])).is_none());
         assert!(closes(&columns(1, [0.6, 0.4])).is_none());
+    }
+
+    #[test]
+    fn a_grain_is_taken_exactly() {
+        let contacts = |mu: [f64; 2]| -> Vec<Contact> {
+            let contact = |k: usize| {
+                let (sin, cos) = (std::f64::consts::TAU * k as f64 / 3.0).sin_cos();
+                let n_O = Vec3::new(cos, sin, 0.0);
+                Contact::new(n_O, -n_O, &Cone::grained(&Vec3::z(), mu, 0.0), 1.0)
+            };
+            (0..3).filter_map(contact).collect()
+        };
+        for mu in [[0.6, 0.4], [0.4, 0.6], [0.5, 0.5]] {
+            let contacts = contacts(mu);
+            let proof = super::super::best(&contacts).expect("three fingers close a ball");
+            let exact = force::margin(&contacts, &proof);
+            let inside = closes(&columns(3, mu)).expect("so do edges inside");
+            assert!(exact >= 0.9 * inside && exact > 0.0, "{exact} {inside}");
+            // Each force is within the ellipse.
+            for (contact, force) in contacts.iter().zip(&proof.forces) {
+                let f = contact.stretch(&force.tangential);
+                let share = (f.z / mu[0]).hypot((f - Vec3::z() * f.z).norm() / mu[1]);
+                assert!(share <= force.normal + 1e-12, "{share} {}", force.normal);
+            }
+        }
+        assert!(super::super::best(&contacts([0.6, 0.0])).is_err());
+        assert!(super::super::best(&contacts([0.0, 0.6])).is_err());
     }
 
     #[test]

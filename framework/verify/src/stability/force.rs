@@ -5,7 +5,7 @@
 //! of this project, section 1.)
 
 use nalgebra::{Cholesky, Matrix6, SMatrix, Vector6};
-use regrasp_api::{MAX_FINGERS, Vec3, cross_matrix};
+use regrasp_api::{Cone, MAX_FINGERS, Vec3, cross_matrix};
 
 /// The least slack of a proof, for forces whose normal parts sum to 1: below, solvers and rounding decide,
 /// not the grasp.
@@ -20,16 +20,61 @@ pub(crate) struct Contact {
     pub(crate) r: Vec3,
     /// The inward unit normal.
     pub(crate) n: Vec3,
-    /// Coefficient of friction.
+    /// Coefficient of friction; with a grain the smaller one.
     pub(crate) mu: f64,
     /// Torsional radius divided by the length.
     pub(crate) gamma: f64,
+    /// The tangent along which a grain gives more friction, and how much more; `None` where it is the same
+    /// all round.
+    pub(crate) more: Option<(Vec3, f64)>,
 }
 
+/// A grain whose tangential part is shorter than this share of it stands on the contact.
+const STANDING: f64 = 1e-9;
+
 impl Contact {
+    /// The contact at `r` with the inward unit normal `n` and this cone, torsional radii over `length`;
+    /// `None` where the cone is a polyhedron.
+    pub(crate) fn new(r: Vec3, n: Vec3, cone: &Cone<'_>, length: f64) -> Option<Self> {
+        let round = |mu: f64, gamma: f64| Self { r, n, mu, gamma: gamma / length, more: None };
+        let grain = match cone {
+            Cone::Elliptic { mu, gamma } => return Some(round(*mu, *gamma)),
+            Cone::Polyhedral(_) => return None,
+            Cone::Grained(grain) => grain,
+        };
+        let flat = grain.axis_O - n * n.dot(&grain.axis_O);
+        let [along, across] = grain.mu;
+        let contact = round(along.min(across), grain.gamma);
+        if flat.norm() <= STANDING * grain.axis_O.norm() {
+            return Some(contact);
+        }
+        let tangent = flat.normalize();
+        let tangent = if along >= across { tangent } else { n.cross(&tangent) };
+        Some(Self { more: Some((tangent, (along - across).abs())), ..contact })
+    }
+
+    /// The tangential force whose scaled coordinates are `t`; symmetric.
+    pub(crate) fn stretch(&self, t: &Vec3) -> Vec3 {
+        match &self.more {
+            None => t * self.mu,
+            Some((tangent, more)) => t * self.mu + tangent * (more * tangent.dot(t)),
+        }
+    }
+
+    /// The scaled coordinates of a tangential force.
+    fn shrink(&self, f: &Vec3) -> Vec3 {
+        match &self.more {
+            None => f / self.mu,
+            Some((tangent, more)) => {
+                let along = tangent * tangent.dot(f);
+                (f - along) / self.mu + along / (self.mu + more)
+            }
+        }
+    }
+
     /// The wrench (force, torque) of a force in scaled coordinates.
     pub(crate) fn wrench(&self, y: &Force) -> Vector6<f64> {
-        let force = self.n * y.normal + y.tangential * self.mu;
+        let force = self.n * y.normal + self.stretch(&y.tangential);
         let torque = self.r.cross(&force) + self.n * (self.gamma * y.spin);
         stack(&force, &torque)
     }
@@ -45,6 +90,10 @@ impl Contact {
         J.fixed_rows_mut::<3>(0).fill_with_identity();
         J.fixed_rows_mut::<3>(3).copy_from(&cross_matrix(&self.r));
         *sum += J * J.transpose() * mu_squared;
+        if let Some((tangent, more)) = &self.more {
+            let column = stack(tangent, &self.r.cross(tangent));
+            *sum += column * column.transpose() * (u * more * (2.0 * self.mu + more));
+        }
         let spin = stack(&Vec3::zeros(), &self.n);
         *sum += spin * spin.transpose() * (u * self.gamma * self.gamma);
     }
@@ -79,7 +128,7 @@ pub(crate) fn scaled(contacts: &[Contact], given_O: &[Vec3]) -> Forces {
     let mut forces = [Force::default(); MAX_FINGERS];
     for (force, (contact, given)) in forces.iter_mut().zip(contacts.iter().zip(given_O)) {
         force.normal = contact.n.dot(given);
-        force.tangential = (given - contact.n * force.normal) / contact.mu;
+        force.tangential = contact.shrink(&(given - contact.n * force.normal));
     }
     forces
 }
@@ -134,7 +183,7 @@ impl Correction {
             let v = a + b.cross(&contact.r);
             let v_n = contact.n.dot(&v);
             force.normal -= v_n;
-            force.tangential -= (v - contact.n * v_n) * contact.mu;
+            force.tangential -= contact.stretch(&(v - contact.n * v_n));
             force.spin -= b.dot(&contact.n) * contact.gamma;
         }
         forces

@@ -22,7 +22,7 @@ impl Row {
     pub(crate) fn of(&self, contact: &Contact, length: f64, unit: f64) -> (f64, Vec3, f64) {
         let scale = unit / self.limit;
         let column = self.column_O * scale;
-        (column.dot(&contact.n), column * contact.mu, self.spin * contact.gamma * length * scale)
+        (column.dot(&contact.n), contact.stretch(&column), self.spin * contact.gamma * length * scale)
     }
 }
 

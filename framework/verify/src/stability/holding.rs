@@ -13,8 +13,8 @@ use nalgebra::Vector6;
 use regrasp_api::{HoldLoad, MAX_FINGERS, Vec3};
 use regrasp_plan::{Claims, ConeClaim, Place};
 
-/// Grasps not proved to hold after which no more are looked at: the plan is refused anyway.
-const MOST_FAILURES: usize = 100;
+/// Grasps of a stretch not proved to hold after which no more are looked at: the plan is refused anyway.
+const MOST_FAILURES: usize = 20;
 /// The part of the solver's slack below which carried forces are no longer taken.
 const DWINDLED: f64 = 0.4;
 
@@ -34,22 +34,39 @@ pub(crate) struct HoldingCheck {
     last: Option<(Held, Vec3)>,
 }
 
+/// A grasp with what is worked out once for all that it must hold.
+struct Grasp<'h> {
+    held: &'h Held,
+    /// For each contact and joint behind it, see [`HoldingCheck::shares`].
+    shares: Vec<Vec<(f64, Vec3, f64)>>,
+    correction: Correction,
+}
+
+impl Grasp<'_> {
+    /// How fast an effort's share grows with a force, at most.
+    fn steepest(&self) -> f64 {
+        let each = self.shares.iter().flatten();
+        each.map(|(normal, tangential, spin)| normal.abs() + tangential.norm() + spin.abs())
+            .fold(0.0, f64::max)
+    }
+}
+
 impl HoldingCheck {
     /// `None` where the claim has no meaning.
     pub(crate) fn new(claims: &Claims, load: &HoldLoad, weight_H: Vec3) -> Option<Self> {
         let cone = claims.contact.cone?;
         let HoldLoad { friction_factor, disturbance_force, disturbance_torque, max_normal_force, weight } =
             *load;
-        let sizes =
-            [cone.mu, cone.gamma, disturbance_force, disturbance_torque, max_normal_force.unwrap_or(1.0)];
+        let sizes = [disturbance_force, disturbance_torque, max_normal_force.unwrap_or(1.0)];
         let sound = sizes.iter().all(|x| *x >= 0.0 && x.is_finite())
+            && cone.is_sound()
             && friction_factor > 0.0
             && friction_factor <= 1.0
             && claims.margin.length > 0.0
             && claims.margin.length.is_finite();
         let weight_H = if weight { weight_H } else { Vec3::zeros() };
         let unit = weight_H.norm().max(disturbance_force).max(disturbance_torque / claims.margin.length);
-        let cone = ConeClaim { mu: cone.mu * friction_factor, gamma: cone.gamma * friction_factor };
+        let cone = cone.scaled(friction_factor);
         (sound && unit > 0.0).then(|| Self {
             gauge: Gauge::new("stability", "force", Side::Above, LEAST_SLACK),
             load: *load,
@@ -63,12 +80,6 @@ impl HoldingCheck {
             failures: 0,
             last: None,
         })
-    }
-
-    /// Starts a segment: the contacts change, so no forces are carried over.
-    pub(crate) fn start(&mut self) {
-        self.carried = None;
-        self.last = None;
     }
 
     /// Takes in one sample, with where everything is and where the fingers touch.
@@ -107,9 +118,8 @@ impl HoldingCheck {
     ) -> Result<f64, f64> {
         let held = self.held(leg, hand, frames, touches);
         let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
-        self.start();
-        self.solved = 0.0;
-        let is_known = forces_O.len() == held.contacts.len() && self.cone.mu > 0.0;
+        (self.carried, self.last, self.solved) = (None, None, 0.0);
+        let is_known = forces_O.len() == held.contacts.len() && self.cone.least() > 0.0;
         let known = is_known.then(|| {
             let given: Vec<Vec3> = forces_O.iter().map(|force| force / self.unit).collect();
             scaled(&held.contacts, &given)
@@ -126,30 +136,35 @@ impl HoldingCheck {
     ) -> Held {
         let mut held = Held::default();
         // Contacts may spin in a transfer, and a spinning contact transmits no torsion.
-        let gamma = if leg.moving.is_some() { self.cone.gamma } else { 0.0 };
+        let cone = self.cone.cone();
+        let cone = if leg.moving.is_some() { cone } else { cone.without_torsion() };
         for (finger, touch) in touches.iter().enumerate() {
             let Some(touch) = touch.filter(|_| leg.moving != Some(finger)) else { continue };
             let n = -touch.n_O;
             let r = (touch.p_OC - self.center_O) / self.length;
-            held.contacts.push(Contact { r, n, mu: self.cone.mu, gamma: gamma / self.length });
+            held.contacts.extend(Contact::new(r, n, &cone, self.length));
             held.rows.push(hand.rows(finger, frames, &touch.p_OC, &n));
         }
         held
     }
 
-    /// The slack with which the grasp is proved to hold the load; `Err` gives what could not be proved. Forces
-    /// that are known to hold the weight may hold more.
+    /// The slack with which the grasp is proved to hold the load; `Err` gives what could not be proved.
+    /// Forces that are known to hold the weight may hold more.
     fn prove(&mut self, held: &Held, weight_O: &Vec3, known: Option<&Forces>) -> Result<f64, f64> {
-        let correction = Correction::new(&held.contacts).ok_or(f64::NEG_INFINITY)?;
+        let grasp = Grasp {
+            held,
+            shares: self.shares(held),
+            correction: Correction::new(&held.contacts).ok_or(f64::NEG_INFINITY)?,
+        };
         let wanted = self.wanted(weight_O);
         if let Some(carried) = self.carried.take()
-            && let Ok(slack) = self.check(held, &correction, carried, &wanted)
+            && let Ok(slack) = self.check(&grasp, carried, &wanted)
             && slack > DWINDLED * self.solved
         {
             return Ok(slack);
         }
-        let forces = self.solve(held, &correction, &wanted, known)?;
-        self.solved = self.check(held, &correction, forces, &wanted)?;
+        let forces = self.solve(&grasp, &wanted, known)?;
+        self.solved = self.check(&grasp, forces, &wanted)?;
         Ok(self.solved)
     }
 
@@ -157,11 +172,11 @@ impl HoldingCheck {
     /// often hold another one too, brought to its wrench.
     fn solve(
         &self,
-        held: &Held,
-        correction: &Correction,
+        grasp: &Grasp<'_>,
         wanted: &[Vector6<f64>],
         known: Option<&Forces>,
     ) -> Result<Vec<Forces>, f64> {
+        let Grasp { held, correction, .. } = grasp;
         let most = self.load.max_normal_force.map(|most| most / self.unit);
         // Known ones are taken as they are: they were not chosen for their slack.
         let mut solved: Vec<(Forces, f64)> = known.map(|forces| (*forces, 0.0)).into_iter().collect();
@@ -171,7 +186,7 @@ impl HoldingCheck {
             let enough = enough.max(LEAST_SLACK);
             let brought = |(forces, _): &(Forces, f64)| correction.towards(&held.contacts, forces, wanted);
             let mut known = solved.iter().rev().map(brought);
-            all.push(match known.find(|forces| self.least_slack(held, forces) > enough) {
+            all.push(match known.find(|forces| self.least_slack(grasp, forces) > enough) {
                 Some(forces) => forces,
                 None => {
                     let best = socp::best_within(held, self.length, self.unit, most, wanted);
@@ -184,8 +199,9 @@ impl HoldingCheck {
         Ok(all)
     }
 
-    fn least_slack(&self, held: &Held, forces: &Forces) -> f64 {
-        (0..held.contacts.len()).map(|i| self.slack(held, i, forces)).fold(f64::INFINITY, f64::min)
+    fn least_slack(&self, grasp: &Grasp<'_>, forces: &Forces) -> f64 {
+        let count = grasp.held.contacts.len();
+        (0..count).map(|i| self.slack(grasp, i, forces)).fold(f64::INFINITY, f64::min)
     }
 
     /// The wrenches that the contacts must give, over the unit.
@@ -208,20 +224,20 @@ impl HoldingCheck {
     /// gives the slack that is too little.
     fn check(
         &mut self,
-        held: &Held,
-        correction: &Correction,
+        grasp: &Grasp<'_>,
         mut forces: Vec<Forces>,
         wanted: &[Vector6<f64>],
     ) -> Result<f64, f64> {
+        let Grasp { held, correction, .. } = grasp;
         let mut least = f64::INFINITY;
-        let steepest = 1.0 + self.steepest(held);
+        let steepest = 1.0 + grasp.steepest();
         for (forces, wanted) in forces.iter_mut().zip(wanted) {
             *forces = correction.towards(&held.contacts, forces, wanted);
             let mut residual = -wanted;
             let mut slack = f64::INFINITY;
             for (i, contact) in held.contacts.iter().enumerate() {
                 residual += contact.wrench(&forces[i]);
-                slack = slack.min(self.slack(held, i, forces));
+                slack = slack.min(self.slack(grasp, i, forces));
             }
             // What balances the residual exactly is smaller than residual/singular, and must leave neither
             // cones nor efforts.
@@ -234,31 +250,31 @@ impl HoldingCheck {
         Ok(least)
     }
 
+    /// What a joint's effort, over its limit, is of each part of the force at its contact.
+    fn shares(&self, held: &Held) -> Vec<Vec<(f64, Vec3, f64)>> {
+        let each = held.contacts.iter().zip(&held.rows);
+        each.map(|(contact, rows)| rows.iter().map(|row| row.of(contact, self.length, self.unit)).collect())
+            .collect()
+    }
+
     /// The room of one contact's force: to its cone, to the largest normal force, and of its joints' efforts
     /// (of the limit).
-    fn slack(&self, held: &Held, i: usize, forces: &Forces) -> f64 {
-        let (contact, force) = (&held.contacts[i], &forces[i]);
+    fn slack(&self, grasp: &Grasp<'_>, i: usize, forces: &Forces) -> f64 {
+        let force = &forces[i];
         let mut slack = force.slack();
         if let Some(most) = self.load.max_normal_force {
             slack = slack.min(most / self.unit - force.normal);
         }
-        for row in &held.rows[i] {
-            let (normal, tangential, spin) = row.of(contact, self.length, self.unit);
+        for (normal, tangential, spin) in &grasp.shares[i] {
             let share = normal * force.normal + tangential.dot(&force.tangential) + spin * force.spin;
             slack = slack.min(1.0 - share.abs());
         }
         slack
     }
 
-    /// How fast an effort's share grows with a force, at most.
-    fn steepest(&self, held: &Held) -> f64 {
-        let each = held.contacts.iter().zip(&held.rows).flat_map(|(contact, rows)| {
-            rows.iter().map(|row| {
-                let (normal, tangential, spin) = row.of(contact, self.length, self.unit);
-                normal.abs() + tangential.norm() + spin.abs()
-            })
-        });
-        each.fold(0.0, f64::max)
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, later: Self) {
+        self.gauge.join(later.gauge);
     }
 
     pub(crate) fn check_made(self) -> Check {

@@ -9,6 +9,7 @@ use crate::verdict::{Check, Gauge};
 use nalgebra::Vector6;
 use regrasp_api::{HoldLoad, MAX_FINGERS, Vec3};
 use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, Holds, HoldsAt, Place};
+use std::cmp::Ordering;
 
 /// How far forces may be from balance, of the load.
 const BALANCED: f64 = 1e-6;
@@ -31,9 +32,20 @@ pub(crate) struct HoldsCheck {
     most_mass: Option<Extreme>,
     disturbance: Option<Extreme>,
     effort: Option<Extreme>,
+    /// The state last looked at, and what was found.
+    last: Option<(Here, Option<&'static str>, Figures)>,
+}
+
+/// A grasp with its forces, and the object's weight in O.
+#[derive(PartialEq)]
+struct Here {
+    held: Held,
+    forces: Forces,
+    weight_O: Vec3,
 }
 
 /// The figures of one state.
+#[derive(Clone, Copy)]
 struct Figures {
     friction: f64,
     mass: f64,
@@ -44,7 +56,7 @@ struct Figures {
 impl HoldsCheck {
     /// `None` where the plan claims no cone, or none of its states holds forces.
     pub(crate) fn new(claims: &Claims, weight_H: Vec3, mass: f64, has_forces: bool) -> Option<Self> {
-        let cone = claims.contact.cone.filter(|cone| cone.mu > 0.0 && cone.mu.is_finite())?;
+        let cone = claims.contact.cone.filter(|cone| cone.least() > 0.0 && cone.most().is_finite())?;
         let load = match &claims.criterion {
             Criterion::Holding(load) => Some(*load),
             _ => None,
@@ -62,6 +74,7 @@ impl HoldsCheck {
             most_mass: None,
             disturbance: None,
             effort: None,
+            last: None,
         })
     }
 
@@ -83,11 +96,26 @@ impl HoldsCheck {
             Err(fault) => return self.gauge.fault(|| place(fault)),
         };
         let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
-        if let Some(fault) = self.fault(&held, &forces, &weight_O) {
+        let here = Here { held, forces, weight_O };
+        let (fault, figures) = self.look(here);
+        if let Some(fault) = fault {
             self.gauge.fault(|| place(fault));
         }
-        let figures = self.figures(&held, &forces, &weight_O);
         self.take(&figures, || leg.at(state));
+    }
+
+    /// What is wrong with the forces of a state, and its figures. In a regrasp all that holds rests: the
+    /// state is often the one just looked at.
+    fn look(&mut self, here: Here) -> (Option<&'static str>, Figures) {
+        if let Some((last, fault, figures)) = &self.last
+            && *last == here
+        {
+            return (*fault, *figures);
+        }
+        let fault = self.fault(&here.held, &here.forces, &here.weight_O);
+        let figures = self.figures(&here.held, &here.forces, &here.weight_O);
+        self.last = Some((here, fault, figures));
+        (fault, figures)
     }
 
     /// The forces that one state records, by themselves: the friction and the largest share of an effort that
@@ -119,6 +147,7 @@ impl HoldsCheck {
         frames: &Frames,
     ) -> Result<(Held, Forces), &'static str> {
         let (mut held, mut given) = (Held::default(), Vec::new());
+        let cone = self.cone.cone().without_torsion();
         for (finger, contact) in leg.states[state].record.contacts.iter().enumerate() {
             let force = recorded.get(finger).copied().flatten();
             let holds = contact.filter(|_| leg.moving != Some(finger));
@@ -130,7 +159,7 @@ impl HoldsCheck {
             };
             let (p_OC, n) = (Vec3::from(contact.point_O), -Vec3::from(contact.normal_O));
             let r = (p_OC - self.center_O) / self.length;
-            held.contacts.push(Contact { r, n, mu: self.cone.mu, gamma: 0.0 });
+            held.contacts.extend(Contact::new(r, n, &cone, self.length));
             held.rows.push(hand.rows(finger, frames, &p_OC, &n));
             given.push(Vec3::from(force));
         }
@@ -168,10 +197,11 @@ impl HoldsCheck {
         None
     }
 
-    /// The friction, and the largest share of an effort, that forces take.
+    /// The friction (with a grain the larger coefficient at the share that forces take), and the largest
+    /// share of an effort, that forces take.
     fn needs(&self, held: &Held, forces: &Forces) -> (f64, f64) {
         let each = || (0..held.contacts.len()).map(|i| (i, &forces[i]));
-        let friction = each().map(|(_, force)| friction_of(force)).fold(0.0, f64::max) * self.cone.mu;
+        let friction = each().map(|(_, force)| friction_of(force)).fold(0.0, f64::max) * self.cone.most();
         (friction, each().map(|(i, force)| effort_of(held, i, force, self.length)).fold(0.0, f64::max))
     }
 
@@ -180,46 +210,41 @@ impl HoldsCheck {
         let mut figures =
             Figures { friction: friction.min(NO_FRICTION_DOES), mass: 0.0, disturbance: 0.0, effort };
         let Some(correction) = Correction::new(&held.contacts) else { return figures };
-        let further = |wanted: Vector6<f64>| {
-            let zero = [Force::default(); MAX_FINGERS];
-            self.reach(held, forces, &correction.towards(&held.contacts, &zero, &wanted))
-        };
-        let weight = Vector6::new(weight_O.x, weight_O.y, weight_O.z, 0.0, 0.0, 0.0);
-        figures.mass = if weight.norm() > 0.0 { self.mass * (1.0 + further(-weight)) } else { 0.0 };
-        let pushes = icosahedron().into_iter().map(|v| further(Vector6::new(v.x, v.y, v.z, 0.0, 0.0, 0.0)));
-        figures.disturbance = pushes.fold(f64::INFINITY, f64::min);
+        let room = Room::new(held, forces, &correction, self.length);
+        figures.mass = if weight_O.norm() > 0.0 { self.mass * (1.0 + room.reach(&-weight_O)) } else { 0.0 };
+        figures.disturbance = icosahedron().iter().map(|push| room.reach(push)).fold(f64::INFINITY, f64::min);
         figures
     }
 
-    /// The largest multiple of `more` that may be added to the forces within cones and efforts; 0 where they
-    /// are outside already.
-    fn reach(&self, held: &Held, forces: &Forces, more: &Forces) -> f64 {
-        let mut reach = 1e6_f64;
-        for i in 0..held.contacts.len() {
-            let (force, more) = (&forces[i], &more[i]);
-            reach = reach.min(reach_of_cone(force, more));
-            let rows = held.rows[i].iter().map(|row| {
-                let share = |force: &Force| share(row, &held.contacts[i], force, self.length);
-                let (now, rate) = (share(force), share(more));
-                if rate == 0.0 { f64::INFINITY } else { ((rate.signum() - now) / rate).max(0.0) }
-            });
-            reach = rows.fold(reach, f64::min);
+    fn take(&mut self, figures: &Figures, place: impl Fn() -> Place) {
+        let extreme = |value: f64| Some(Extreme::new(value, place(), HoldsAt::EveryState));
+        let [friction, effort, mass, disturbance] = self.kept();
+        for (kept, value, order) in [
+            (friction, figures.friction, LARGEST),
+            (effort, figures.effort, LARGEST),
+            (mass, figures.mass, SMALLEST),
+            (disturbance, figures.disturbance, SMALLEST),
+        ] {
+            if value.is_finite() && is_worse(kept, value, order) {
+                *kept = extreme(value);
+            }
         }
-        reach
     }
 
-    fn take(&mut self, figures: &Figures, place: impl Fn() -> Place) {
-        let worse = |kept: &mut Option<Extreme>, value: f64, larger: bool| {
-            let is_worse =
-                kept.as_ref().is_none_or(|k| if larger { value > k.value } else { value < k.value });
-            if is_worse && value.is_finite() {
-                *kept = Some(Extreme::new(value, place(), HoldsAt::EveryState));
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, mut later: Self) {
+        let orders = [LARGEST, LARGEST, SMALLEST, SMALLEST];
+        for ((kept, later), order) in self.kept().into_iter().zip(later.kept()).zip(orders) {
+            if later.as_ref().is_some_and(|later| is_worse(kept, later.value, order)) {
+                *kept = later.take();
             }
-        };
-        worse(&mut self.friction, figures.friction, true);
-        worse(&mut self.effort, figures.effort, true);
-        worse(&mut self.most_mass, figures.mass, false);
-        worse(&mut self.disturbance, figures.disturbance, false);
+        }
+        self.gauge.join(later.gauge);
+    }
+
+    /// Friction, effort, mass and disturbance.
+    fn kept(&mut self) -> [&mut Option<Extreme>; 4] {
+        [&mut self.friction, &mut self.effort, &mut self.most_mass, &mut self.disturbance]
     }
 
     /// The figures for the certificate.
@@ -237,13 +262,73 @@ impl HoldsCheck {
     }
 }
 
+/// Of which figures the largest, and of which the smallest counts.
+const LARGEST: Ordering = Ordering::Greater;
+const SMALLEST: Ordering = Ordering::Less;
+
+/// Whether a value is worse than the one kept.
+fn is_worse(kept: &Option<Extreme>, value: f64, worse: Ordering) -> bool {
+    kept.as_ref().is_none_or(|kept| value.partial_cmp(&kept.value) == Some(worse))
+}
+
+/// How far forces may grow within cones and efforts.
+struct Room<'f> {
+    forces: &'f [Force],
+    /// The smallest forces that give a unit force along each axis of O: what gives another is their sum.
+    units: [Forces; 3],
+    /// Of each joint: its contact, what its share of an effort is of each part of the force there, and the
+    /// share now.
+    rows: Vec<(usize, (f64, Vec3, f64), f64)>,
+}
+
+impl<'f> Room<'f> {
+    fn new(held: &Held, forces: &'f Forces, correction: &Correction, length: f64) -> Self {
+        let contacts = &held.contacts[..];
+        let unit = |axis: usize| {
+            let mut wanted = Vector6::zeros();
+            wanted[axis] = 1.0;
+            correction.towards(contacts, &[Force::default(); MAX_FINGERS], &wanted)
+        };
+        let mut rows = Vec::new();
+        for (i, (contact, behind)) in contacts.iter().zip(&held.rows).enumerate() {
+            rows.extend(behind.iter().map(|row| {
+                let parts = row.of(contact, length, 1.0);
+                (i, parts, share_of(&parts, &forces[i]))
+            }));
+        }
+        Self { forces: &forces[..contacts.len()], units: std::array::from_fn(unit), rows }
+    }
+
+    /// The largest multiple of a force on the object (in O) that the contacts can give on top; 0 where the
+    /// forces are outside already.
+    fn reach(&self, push_O: &Vec3) -> f64 {
+        let mut more = [Force::default(); MAX_FINGERS];
+        for (unit, part) in self.units.iter().zip(push_O.iter()) {
+            for (more, unit) in more.iter_mut().zip(unit) {
+                more.normal += unit.normal * part;
+                more.tangential += unit.tangential * *part;
+                more.spin += unit.spin * part;
+            }
+        }
+        let cones = self.forces.iter().zip(&more).map(|(force, more)| reach_of_cone(force, more));
+        let efforts = self.rows.iter().map(|(i, parts, now)| {
+            let rate = share_of(parts, &more[*i]);
+            if rate == 0.0 { f64::INFINITY } else { ((rate.signum() - now) / rate).max(0.0) }
+        });
+        cones.chain(efforts).fold(1e6, f64::min)
+    }
+}
+
 /// The share of the friction that a force needs.
 fn friction_of(force: &Force) -> f64 {
     if force.normal > 0.0 { force.tangential.norm() / force.normal } else { f64::INFINITY }
 }
 
 fn share(row: &Row, contact: &Contact, force: &Force, length: f64) -> f64 {
-    let (normal, tangential, spin) = row.of(contact, length, 1.0);
+    share_of(&row.of(contact, length, 1.0), force)
+}
+
+fn share_of((normal, tangential, spin): &(f64, Vec3, f64), force: &Force) -> f64 {
     normal * force.normal + tangential.dot(&force.tangential) + spin * force.spin
 }
 

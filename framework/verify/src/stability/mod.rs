@@ -5,6 +5,7 @@
 //! problems", IEEE T-RA 2000.
 
 mod cones;
+mod edge_load;
 mod force;
 mod held;
 mod holding;
@@ -23,10 +24,12 @@ use load::LoadCheck;
 use regrasp_api::{MAX_FINGERS, Rotation, Vec3};
 use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, HoldsAt, Place};
 
-/// Grasps not proved stable after which no more are looked at: the plan is refused anyway.
-const MOST_FAILURES: usize = 100;
+/// Grasps of a stretch not proved stable after which no more are looked at: the plan is refused anyway.
+const MOST_FAILURES: usize = 20;
 /// Grasps of smallest margin for which the best force is sought again: each one's bound can only rise.
 const MOST_REFINEMENTS: usize = 24;
+/// Where the best force raises a bound by no more than this part of it, none is sought any more.
+const ENOUGH: f64 = 1e-3;
 
 /// The part of the solver's slack below which a carried force is no longer taken: the best one at this grasp
 /// may be far better.
@@ -56,12 +59,19 @@ struct Margin {
     place: Place,
 }
 
+impl Margin {
+    /// Raises the bound by a proof of another grasp, where it proves more.
+    fn sharpen(&mut self, proof: &Proof) {
+        if let Some(proof) = force::prove(&self.contacts, &proof.forces) {
+            self.lower = self.lower.max(force::margin(&self.contacts, &proof));
+        }
+    }
+}
+
 impl StabilityCheck {
     /// For an object of this weight (N, in H).
     pub(crate) fn new(claims: &Claims, weight_H: Vec3) -> Self {
         let mut gauge = Gauge::new("stability", "force", Side::Above, LEAST_SLACK);
-        let valid =
-            |cone: &ConeClaim| cone.mu >= 0.0 && cone.gamma >= 0.0 && (cone.mu + cone.gamma).is_finite();
         let (known, load) = match &claims.criterion {
             Criterion::Closure => (true, None),
             Criterion::Equilibrium(load) => {
@@ -79,11 +89,11 @@ impl StabilityCheck {
                 ..Default::default()
             });
         }
-        let cone = claims.contact.cone.filter(valid).filter(|_| known && !elsewhere);
+        let cone = claims.contact.cone.filter(ConeClaim::is_sound).filter(|_| known && !elsewhere);
         if claims.contact.cone.is_none() {
             gauge.remark(
                 "not independently checked: the plan claims no elliptic cone that all its contacts share, \
-                    and no closure by cones of their own",
+                    and neither closure nor equilibrium by cones of their own",
             );
         } else if cone.is_none() && known && !elsewhere {
             gauge.note(f64::NAN, || Place {
@@ -168,15 +178,13 @@ impl StabilityCheck {
         touches: &[Option<Touch>; MAX_FINGERS],
     ) -> Vec<Contact> {
         // Contacts may spin in a transfer, and a spinning contact transmits no torsion.
-        let gamma = if leg.moving.is_some() { cone.gamma } else { 0.0 };
+        let cone = if leg.moving.is_some() { cone.cone() } else { cone.cone().without_torsion() };
         let holding = touches.iter().enumerate().filter(|&(finger, _)| leg.moving != Some(finger));
-        let contact = |touch: Touch| Contact {
-            r: (touch.p_OC - self.center_O) / self.length,
-            n: -touch.n_O,
-            mu: cone.mu,
-            gamma: gamma / self.length,
+        let contact = |touch: Touch| {
+            let r = (touch.p_OC - self.center_O) / self.length;
+            Contact::new(r, -touch.n_O, &cone, self.length)
         };
-        holding.filter_map(|(_, touch)| touch.map(contact)).collect()
+        holding.filter_map(|(_, touch)| contact((*touch)?)).collect()
     }
 
     /// A proof for the grasp from the carried force, else (or where its slack has dwindled) from the
@@ -223,7 +231,7 @@ impl StabilityCheck {
         touches: &[Option<Touch>; MAX_FINGERS],
         forces_O: &[Vec3],
     ) -> Option<f64> {
-        let cone = self.cone.filter(|cone| self.load.is_none() && cone.mu > 0.0);
+        let cone = self.cone.filter(|cone| self.load.is_none() && cone.least() > 0.0);
         let proved = cone.and_then(|cone| {
             let contacts = self.contacts(leg, &cone, touches);
             let proof = force::prove(&contacts, &force::scaled(&contacts, forces_O))?;
@@ -233,18 +241,30 @@ impl StabilityCheck {
     }
 
     /// The smallest margin, for the certificate: bounds that a carried force left loose are sharpened with
-    /// the best one.
+    /// the best one, which is often nearly the best of grasps close by.
     pub(crate) fn extreme(&mut self) -> Option<Extreme> {
+        let smallest = |a: &&mut Margin, b: &&mut Margin| a.lower.total_cmp(&b.lower);
         for _ in 0..MOST_REFINEMENTS {
-            let worst = self.margins.iter_mut().min_by(|a, b| a.lower.total_cmp(&b.lower))?;
-            let refined = best(&worst.contacts).map_or(0.0, |proof| force::margin(&worst.contacts, &proof));
-            if refined <= worst.lower * (1.0 + 1e-9) {
+            let worst = self.margins.iter_mut().min_by(smallest)?;
+            let before = worst.lower;
+            let Ok(proof) = best(&worst.contacts) else { break };
+            worst.lower = before.max(force::margin(&worst.contacts, &proof));
+            let refined = worst.lower;
+            if refined <= before * (1.0 + ENOUGH) {
                 break;
             }
-            worst.lower = refined;
+            for other in self.margins.iter_mut().filter(|other| other.lower < refined) {
+                other.sharpen(&proof);
+            }
         }
         let worst = self.margins.iter().min_by(|a, b| a.lower.total_cmp(&b.lower))?;
         Some(Extreme::new(worst.lower, worst.place.clone(), HoldsAt::EveryState))
+    }
+
+    /// Takes in what was gathered later in the plan.
+    pub(crate) fn join(&mut self, mut later: Self) {
+        self.gauge.join(later.gauge);
+        self.margins.append(&mut later.margins);
     }
 
     pub(crate) fn check(self) -> Check {

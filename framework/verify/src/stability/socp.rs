@@ -74,6 +74,35 @@ pub(crate) fn best_shares(columns: &[Vector6<f64>]) -> Option<Vec<f64>> {
     Some(solution)
 }
 
+/// The weights λ ≥ t of each contact's edges, with Σ λ + t ≤ 1 at each contact and the wanted wrench, that
+/// have the largest t.
+pub(crate) fn best_weights(columns: &[Vec<Vector6<f64>>], wanted: &Vector6<f64>) -> Option<Vec<f64>> {
+    let count: usize = columns.iter().map(Vec::len).sum();
+    let mut problem = Problem::new(count + 1);
+    problem.b.extend(wanted.iter());
+    problem.cones.push(SupportedConeT::ZeroConeT(6));
+    let mut j = 0;
+    for (i, columns) in columns.iter().enumerate() {
+        for column in columns {
+            (0..6).for_each(|axis| problem.set(axis, j, column[axis]));
+            problem.set(6 + i, j, 1.0);
+            j += 1;
+        }
+        problem.set(6 + i, count, 1.0);
+        problem.b.push(1.0);
+    }
+    for j in 0..count {
+        let row = problem.b.len();
+        problem.set(row, j, -1.0);
+        problem.set(row, count, 1.0);
+        problem.b.push(0.0);
+    }
+    problem.cones.push(SupportedConeT::NonnegativeConeT(columns.len() + count));
+    let mut solution = problem.solve()?;
+    solution.truncate(count);
+    Some(solution)
+}
+
 fn forces_of(solution: &[f64], tangents: &[[Vec3; 2]]) -> (Forces, f64) {
     let mut forces = [Force::default(); MAX_FINGERS];
     for (i, force) in forces.iter_mut().take(tangents.len()).enumerate() {
@@ -115,7 +144,8 @@ impl Problem {
     /// Rows 0 to 5: the forces' wrench is `wanted`.
     fn balance(&mut self, contacts: &[Contact], tangents: &[[Vec3; 2]], wanted: &Vector6<f64>) {
         for (i, (contact, tangents)) in contacts.iter().zip(tangents).enumerate() {
-            let forces = [contact.n, tangents[0] * contact.mu, tangents[1] * contact.mu, Vec3::zeros()];
+            let [u, v] = tangents.map(|tangent| contact.stretch(&tangent));
+            let forces = [contact.n, u, v, Vec3::zeros()];
             for (k, force) in forces.iter().enumerate() {
                 let mut torque = contact.r.cross(force);
                 if k == 3 {

@@ -3,7 +3,7 @@ use super::{best, socp};
 use regrasp_api::{MAX_FINGERS, Random, Vec3};
 
 fn contact(p: Vec3, outward: Vec3, mu: f64, gamma: f64) -> Contact {
-    Contact { r: p, n: -outward.normalize(), mu, gamma }
+    Contact { r: p, n: -outward.normalize(), mu, gamma, more: None }
 }
 
 /// Three contacts of a cube held across edges: rounding stops the solver before its own tolerances are met.

@@ -184,7 +184,7 @@ pub fn plan_of(mut problem: Problem, hand: &ChainHand, motion: &Motion) -> Plan 
         claims: Claims {
             contact: ContactClaim {
                 model: "contact-model/pcwf".into(),
-                cone: Some(ConeClaim { mu: 0.8, gamma: 0.0 }),
+                cone: Some(ConeClaim::round(0.8, 0.0)),
                 cones: vec![],
             },
             criterion: Criterion::Closure,

@@ -1,9 +1,11 @@
-//! Exact distances by parry3d: the one border between nalgebra and glam.
+//! Exact distances by parry3d.
 
+use super::border::{to_glam, to_parry};
+use super::hull::Hull;
 use super::rod::{Bounds, Rod};
-use parry3d_f64::math::{Pose as ParryPose, Rot3, Vector};
-use parry3d_f64::query::{self, PointQuery, PointQueryWithLocation};
-use parry3d_f64::shape::{Ball, Capsule, Cuboid, Segment, Shape, TriMesh, TriMeshFlags};
+use parry3d_f64::math::Pose as ParryPose;
+use parry3d_f64::query::{self, ClosestPoints, PointQuery, PointQueryWithLocation};
+use parry3d_f64::shape::{Ball, Capsule, ConvexPolyhedron, Cuboid, Segment, Shape, TriMesh, TriMeshFlags};
 use regrasp_api::{Mesh, Pose, Vec3};
 use std::sync::Arc;
 
@@ -31,15 +33,28 @@ pub(crate) struct MeshSolid {
     /// inside another body.
     roots: Vec<Vec3>,
     pub bounds: Bounds,
+    /// The mesh as a hull, where it is convex.
+    pub hull: Option<Hull>,
+    /// The same for parry, where it has few enough corners to be looked through.
+    polyhedron: Option<ConvexPolyhedron>,
 }
+
+/// Hulls of links have fewer corners than this.
+const FEW_CORNERS: usize = 300;
 
 impl MeshSolid {
     pub fn new(mesh: &Mesh) -> Self {
         let vertices: Vec<_> = mesh.vertices().iter().map(to_glam).collect();
+        let roots = roots(mesh);
+        let hull = Hull::of(mesh, roots.len());
+        let is_small = hull.is_some() && vertices.len() <= FEW_CORNERS;
+        let corners = is_small.then(|| vertices.clone());
+        let polyhedron =
+            corners.and_then(|corners| ConvexPolyhedron::from_convex_mesh(corners, mesh.facets()));
         let surface = TriMesh::with_flags(vertices, mesh.facets().to_vec(), TriMeshFlags::ORIENTED)
             .expect("a checked mesh has facets");
         let bounds = Bounds::of(mesh.vertices().iter().copied());
-        Self { surface, vertices: mesh.vertices().to_vec(), roots: roots(mesh), bounds }
+        Self { surface, vertices: mesh.vertices().to_vec(), roots, bounds, hull, polyhedron }
     }
 
     /// Signed distance of a point (m) that is known to be at most `limit` (m) from the surface, which makes
@@ -128,6 +143,25 @@ pub(crate) fn distance(a: &Solid, X_HA: &Pose, b: &Solid, X_HB: &Pose) -> f64 {
     }
 }
 
+/// Whether two solids are more than `clear` (m) apart; for pairs of convex ones there is a faster way.
+pub(super) fn farther(a: &Solid, X_HA: &Pose, b: &Solid, X_HB: &Pose, clear: f64) -> bool {
+    if matches!(a, Solid::HalfSpace { .. }) || matches!(b, Solid::HalfSpace { .. }) {
+        return distance(a, X_HA, b, X_HB) > clear;
+    }
+    let X_AB = X_HA.inv_mul(X_HB);
+    let (core_a, core_b) = (Core::convex_of(a), Core::convex_of(b));
+    let identity = ParryPose::identity();
+    let nearest = query::closest_points(
+        &core_a.placed(identity),
+        core_a.shape(),
+        &core_b.placed(to_parry(&X_AB)),
+        core_b.shape(),
+        clear + core_a.radius + core_b.radius,
+    );
+    let nearest = nearest.expect("parry knows the nearest points of balls, segments, boxes and meshes");
+    matches!(nearest, ClosestPoints::Disjoint) && !holds(a, &X_AB, b) && !holds(b, &X_AB.inverse(), a)
+}
+
 /// How far `solid` (its frame S seen from the half-space's) stays above the plane.
 fn above(normal: &Vec3, offset: f64, X_AS: &Pose, solid: &Solid) -> f64 {
     let n_S = X_AS.rotation.inverse() * normal;
@@ -165,6 +199,7 @@ enum CoreShape<'a> {
     Segment(Segment),
     Cuboid(Cuboid),
     Mesh(&'a TriMesh),
+    Polyhedron(&'a ConvexPolyhedron),
 }
 
 impl<'a> Core<'a> {
@@ -184,6 +219,17 @@ impl<'a> Core<'a> {
         }
     }
 
+    /// The same, convex meshes as such.
+    fn convex_of(solid: &'a Solid) -> Self {
+        let mut core = Self::of(solid);
+        if let Solid::Mesh(mesh) = solid
+            && let Some(polyhedron) = &mesh.polyhedron
+        {
+            core.shape = CoreShape::Polyhedron(polyhedron);
+        }
+        core
+    }
+
     /// The core's pose, its solid being at `X_S`.
     fn placed(&self, X_S: ParryPose) -> ParryPose {
         X_S.prepend_translation(to_glam(&self.origin))
@@ -195,15 +241,7 @@ impl<'a> Core<'a> {
             CoreShape::Segment(shape) => shape,
             CoreShape::Cuboid(shape) => shape,
             CoreShape::Mesh(shape) => *shape,
+            CoreShape::Polyhedron(shape) => *shape,
         }
     }
-}
-
-fn to_glam(v: &Vec3) -> Vector {
-    Vector::new(v.x, v.y, v.z)
-}
-
-fn to_parry(X: &Pose) -> ParryPose {
-    let q = X.rotation.quaternion();
-    ParryPose::from_parts(to_glam(&X.translation.vector), Rot3::from_xyzw(q.i, q.j, q.k, q.w))
 }

@@ -1,9 +1,10 @@
 //! A finger as bodies: its links' solids and the fingertip's ball.
 
+use super::apart::farther;
 use super::block;
 use super::body::Placed;
 use super::convex::Verdict;
-use super::exact::{self, Solid};
+use super::exact::Solid;
 use super::fixed::Fixed;
 use super::object::ObjectBody;
 use super::ordered;
@@ -125,7 +126,7 @@ impl FingerBodies {
         fixed.clear_of_rod(&placed.rods[part], clear)
             || !self.parts[part].placed.is_rod() && {
                 let (solid, X_HS) = self.solid(placed, part);
-                fixed.distance(solid, &X_HS) > clear
+                fixed.is_farther(solid, &X_HS, clear)
             }
     }
 
@@ -188,7 +189,7 @@ impl FingerBodies {
         match block::verdict(&part.placed, &X_HS, object, frame, clear) {
             Verdict::Free => true,
             Verdict::Close => false,
-            Verdict::Unknown => exact::distance(&part.placed.solid, &X_HS, &object.solid, X_HO) > clear,
+            Verdict::Unknown => farther(&part.placed.solid, &X_HS, &object.solid, X_HO, clear),
         }
     }
 }
@@ -218,7 +219,7 @@ fn clear_parts(
         return false;
     }
     let ((solid_a, X_HA), (solid_b, X_HB)) = (a.solid(placed_a, i), b.solid(placed_b, j));
-    exact::distance(solid_a, &X_HA, solid_b, &X_HB) > clear
+    farther(solid_a, &X_HA, solid_b, &X_HB, clear)
 }
 
 /// The first item that fails, as an error.

@@ -1,8 +1,9 @@
 //! Palm and obstacles: bodies fixed to the hand's frame H.
 
+use super::apart::farther;
 use super::body::Placed;
 use super::convex::{Convex, Verdict};
-use super::exact::{self, Solid};
+use super::exact::Solid;
 use super::field::Field;
 use super::object::ObjectBody;
 use super::rod::{Bounds, Rod};
@@ -60,13 +61,13 @@ impl Fixed {
         match verdict {
             Verdict::Free => true,
             Verdict::Close => false,
-            Verdict::Unknown => self.distance(&Solid::Rod(*rod), &Pose::identity()) > clear,
+            Verdict::Unknown => self.is_farther(&Solid::Rod(*rod), &Pose::identity(), clear),
         }
     }
 
-    /// The exact distance (m) of a solid at `X_HS`.
-    pub fn distance(&self, solid: &Solid, X_HS: &Pose) -> f64 {
-        exact::distance(&self.placed.solid, &self.placed.X_BS, solid, X_HS)
+    /// Whether a solid at `X_HS` is farther than `clear` (m); exact.
+    pub fn is_farther(&self, solid: &Solid, X_HS: &Pose, clear: f64) -> bool {
+        farther(&self.placed.solid, &self.placed.X_BS, solid, X_HS, clear)
     }
 
     /// Whether the object is farther than `clear` (m); exact. `frame` is `X_HO` with its rotation as a
@@ -96,7 +97,7 @@ impl Fixed {
             }
             FixedShape::Cuboid { .. } => (),
         }
-        self.distance(&object.solid, X_HO) > clear
+        self.is_farther(&object.solid, X_HO, clear)
     }
 
     /// Whether a plane parallel to a side of the box, or square to the line between the centres, keeps the

@@ -5,13 +5,16 @@
 //! where those leave a doubt (a shell of the width of the object's faceting error) does parry3d decide. So
 //! the answers are exact: nothing free is refused because of a bound, and nothing close is passed.
 
+mod apart;
 mod block;
 mod body;
+mod border;
 mod convex;
 mod exact;
 mod field;
 mod finger;
 mod fixed;
+mod hull;
 mod lone;
 mod object;
 mod report;

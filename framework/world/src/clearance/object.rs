@@ -1,10 +1,11 @@
 //! The object as a body.
 
+use super::apart::farther;
 use super::convex::{Convex, Verdict};
 use super::exact::{MeshSolid, Solid};
 use super::field::Field;
 use super::rod::{Bounds, Rod};
-use regrasp_api::{Mesh, ObjectModel, Vec3};
+use regrasp_api::{Mesh, ObjectModel, Pose, Vec3};
 use std::sync::Arc;
 
 /// The object: bounds that decide nearly always, and the exact mesh for the rest.
@@ -70,6 +71,10 @@ impl ObjectBody {
         match verdict {
             Verdict::Free => true,
             Verdict::Close => false,
+            Verdict::Unknown if self.mesh.hull.is_some() => {
+                let here = Pose::identity();
+                farther(&Solid::Rod(*rod_O), &here, &self.solid, &here, clear)
+            }
             Verdict::Unknown => self.mesh.clear_of_rod(rod_O, clear),
         }
     }

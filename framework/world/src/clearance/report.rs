@@ -1,5 +1,6 @@
 //! The exact distances of all pairs, for what is shown to a user.
 
+use super::apart::farther;
 use super::exact::{self, Solid};
 use super::finger::{FingerBodies, PlacedFinger};
 use super::rod::Bounds;
@@ -23,7 +24,9 @@ struct Table {
 
 impl Table {
     fn compare(&mut self, a: &Item<'_>, b: &Item<'_>) {
-        if a.bounds.clear_of(&b.bounds, self.limit) {
+        let is_far = a.bounds.clear_of(&b.bounds, self.limit)
+            || farther(a.solid, &a.X_HS, b.solid, &b.X_HS, self.limit);
+        if is_far {
             return;
         }
         let distance = exact::distance(a.solid, &a.X_HS, b.solid, &b.X_HS);

@@ -125,8 +125,10 @@ fn friction(task: &Task<'_>, q: &Configuration) -> Result<f64, CallError> {
             let reason = regrasp_physics::PhysicsError::Torsion.to_string();
             return Err(CallError::Unsupported { plugin: ID.into(), reason });
         }
-        if let Cone::Elliptic { mu, .. } = cone {
-            least = least.min(mu);
+        match cone {
+            Cone::Elliptic { mu, .. } => least = least.min(mu),
+            Cone::Grained(grain) => least = least.min(grain.mu[0]).min(grain.mu[1]),
+            Cone::Polyhedral(_) => {}
         }
     }
     Ok(least)

@@ -229,7 +229,7 @@ impl<'a> Search<'a> {
             let v_n = v.dot(&contact.n);
             let v_t = v - contact.n * v_n;
             let spin = contact.gamma * d.b.dot(&contact.n);
-            let spread = (contact.mu * contact.mu * v_t.norm_squared() + spin * spin).sqrt();
+            let spread = (contact.form(&v_t, &v_t) + spin * spin).sqrt();
             slack = slack.min(1.0 - v_n - spread);
             magnitude = magnitude.max(1.0 + 3.0 * v_n.abs() + spread);
         }
@@ -342,9 +342,7 @@ impl Multiplier {
         let k = 1.0 - along.q / here.q;
         let tangential = (here.v_t * k + along.v_t) * scale;
         let torsional = (here.beta * k + along.beta) * scale;
-        let spread = (contact.mu * contact.mu * tangential.norm_squared()
-            + (contact.gamma * torsional).powi(2))
-        .sqrt();
+        let spread = (contact.form(&tangential, &tangential) + (contact.gamma * torsional).powi(2)).sqrt();
         Self { normal: (k * here.s0 + along.s0) * scale, tangential, torsional, spread }
     }
 
@@ -356,14 +354,18 @@ impl Multiplier {
     /// The largest number before cancellation, up to a small factor.
     #[inline]
     fn magnitude(contact: &ScaledContact, here: &Local, along: &Local) -> f64 {
-        let move_size = along.s0.abs() + contact.mu * along.v_t.lp_norm(1) + contact.gamma * along.beta.abs();
+        let mut move_size =
+            along.s0.abs() + contact.mu * along.v_t.lp_norm(1) + contact.gamma * along.beta.abs();
+        if contact.grained {
+            move_size += contact.g.norm() * along.v_t.lp_norm(1);
+        }
         let k = 1.0 + 2.0 * here.s0 * move_size / here.q;
         (k * here.s0 + move_size) * 2.0 / here.q
     }
 
     #[inline]
     fn wrench(&self, contact: &ScaledContact) -> (Vec3, f64) {
-        let f = contact.n * self.normal - self.tangential * (contact.mu * contact.mu);
+        let f = contact.n * self.normal - contact.squared(&self.tangential);
         (f, -contact.gamma * contact.gamma * self.torsional)
     }
 }

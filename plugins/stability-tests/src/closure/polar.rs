@@ -2,7 +2,7 @@
 //!
 //! With v = a + b×r, s0 = 1 + v_n and β = b·n the body is s0 ≥ sqrt(μ²|v_t|² + γ²β²) at every contact, and q
 //! = s0² - μ²|v_t|² - γ²β² is quadratic along every line. Ω is bounded exactly where the grasp is force
-//! closure.
+//! closure. A grain makes μ²|v_t|² + (g·v_t)² of μ²|v_t|², which changes nothing else.
 
 use super::symmetric::Symmetric6;
 use crate::contacts::{ScaledContact, ScaledGrasp, Twist};
@@ -36,8 +36,8 @@ impl Local {
     /// The bilinear form of q between two: `s0 s0' - μ² v_t·v_t' - γ² β β'`.
     #[inline]
     fn form(&self, contact: &ScaledContact, other: &Self) -> f64 {
-        let (mu2, gamma2) = (contact.mu * contact.mu, contact.gamma * contact.gamma);
-        self.s0 * other.s0 - mu2 * self.v_t.dot(&other.v_t) - gamma2 * (self.beta * other.beta)
+        let gamma2 = contact.gamma * contact.gamma;
+        self.s0 * other.s0 - contact.form(&self.v_t, &other.v_t) - gamma2 * (self.beta * other.beta)
     }
 }
 
@@ -93,12 +93,15 @@ impl PolarBody<'_> {
         for (local, contact) in here.iter().zip(self.grasp.contacts()) {
             let (mu2, gamma2) = (contact.mu * contact.mu, contact.gamma * contact.gamma);
             let scale = 2.0 / local.q;
-            let phi = (contact.n * local.s0 - local.v_t * mu2) * scale;
+            let phi = (contact.n * local.s0 - contact.squared(&local.v_t)) * scale;
             let moment = contact.r.cross(&phi) - contact.n * (scale * gamma2 * local.beta);
             let z = Twist { a: phi, b: moment }.to_array();
             H.add_outer(1.0, &z);
             H.add_outer(-scale * (1.0 + mu2), &normal_wrench(contact));
             H.add_velocity(scale * mu2, &contact.r);
+            if contact.grained {
+                H.add_outer(scale, &contact.grain_wrench());
+            }
             if gamma2 > 0.0 {
                 H.add_spin(scale * gamma2, &contact.n);
             }
@@ -128,6 +131,9 @@ impl PolarBody<'_> {
         let (mu2, gamma2) = (contact.mu * contact.mu, contact.gamma * contact.gamma);
         M.add_outer(1.0 - mu2, g0);
         M.add_velocity(mu2, &contact.r);
+        if contact.grained {
+            M.add_outer(1.0, &contact.grain_wrench());
+        }
         if gamma2 > 0.0 {
             M.add_spin(gamma2, &contact.n);
         }
@@ -139,7 +145,7 @@ impl PolarBody<'_> {
         let mut M = Symmetric6::zeros();
         for contact in self.grasp.contacts() {
             let seen = Local::velocity(contact, w);
-            let tangential = (contact.mu * contact.mu) * seen.v_t.norm_squared();
+            let tangential = contact.form(&seen.v_t, &seen.v_t);
             let spin = (contact.gamma * seen.beta).powi(2);
             if seen.s0 * seen.s0 + tangential + spin <= bound * bound {
                 Self::add_contact(&mut M, contact, &normal_wrench(contact));

@@ -1,7 +1,7 @@
 //! Laws of a local planner's answer.
 
 use super::case::{Goal, cases};
-use super::{Kind, build, journeys, on_journeys};
+use super::{Journey, Kind, build, journeys, on_journeys};
 use crate::law::{Always, Subject, context, counted_once, pure, random};
 use crate::report::{Fault, Finding, ensure};
 use regrasp_api::{
@@ -19,7 +19,17 @@ pub(super) fn ends<K: Kind>(subject: &Subject<'_>) -> Finding {
         ensure(states.last() == Some(&journey.reached.end), || {
             format!("the last of {} states is not the end that it returns", states.len())
         })?;
-        Ok(())
+        restarts(subject, journey)
+    })
+}
+
+/// What a path held before is none of its states.
+fn restarts(subject: &Subject<'_>, journey: &Journey) -> Finding {
+    let (case, mut used) = (journey.case, Path { states: vec![journey.reached.end.clone(); 2] });
+    let (task, target) = (case.bench.task(), case.goal.target());
+    build(subject, case)?.connect(&task, &case.from, &target, Some(&mut used), &mut context(0))?;
+    ensure(used.states.first() == Some(&case.from), || {
+        "it goes on where the path that it is given ends, and does not restart it".into()
     })
 }
 
@@ -62,13 +72,39 @@ pub(super) fn path_optional<K: Kind>(subject: &Subject<'_>) -> Finding {
     Ok(())
 }
 
+pub(super) fn fraction<K: Kind>(subject: &Subject<'_>) -> Finding {
+    on_journeys::<K>(subject, |journey| {
+        let case = journey.case;
+        // A fraction that is none is another law's.
+        if laws::reached_kept(&journey.reached).is_err() {
+            return Ok(());
+        }
+        let (task, target) = (case.bench.task(), case.goal.target());
+        let kept = laws::fraction_kept(&task, &case.from, &target, &journey.reached);
+        kept.map_err(|fault| Fault::Broken(fault.what))
+    })
+}
+
 pub(super) fn succeeds<K: Kind>(subject: &Subject<'_>) -> Finding {
     let journeys = journeys::<K>(subject)?;
-    let easy: Vec<_> = journeys.iter().filter(|journey| journey.case.easy).collect();
-    let stops: Vec<_> = easy.iter().filter_map(|journey| journey.reached.stop).collect();
-    ensure(2 * stops.len() <= easy.len(), || {
-        format!("of {} short motions {} fail: {stops:?}", easy.len(), stops.len())
-    })
+    let mut kinds: Vec<&str> = journeys.iter().filter_map(|journey| journey.case.clear).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    for kind in kinds {
+        let clear: Vec<_> = journeys.iter().filter(|journey| journey.case.clear == Some(kind)).collect();
+        // A simulation may see the object drop, or a fingertip slip on a motion that rolls on paper.
+        let simulated = |stop: &Reason| matches!(stop, Reason::Stray | Reason::Slip);
+        let stops = clear.iter().filter_map(|journey| journey.reached.stop);
+        let stops: Vec<_> = stops.filter(|stop| !simulated(stop)).collect();
+        ensure(2 * stops.len() <= clear.len(), || {
+            format!(
+                "of {} motions with nothing in the way ({kind}) {} fail: {stops:?}",
+                clear.len(),
+                stops.len()
+            )
+        })?;
+    }
+    Ok(())
 }
 
 /// Everything is in the way.
@@ -103,7 +139,8 @@ pub(super) fn reasons<K: Kind>(subject: &Subject<'_>) -> Finding {
         let kept = laws::refusal_counted(K::SLOT, &journey.reached, &journey.tally);
         kept.map_err(|fault| Fault::Broken(fault.what))
     })?;
-    for case in journeys::<K>(subject)?.iter().map(|journey| journey.case).filter(|case| !case.easy) {
+    for case in journeys::<K>(subject)?.iter().map(|journey| journey.case).filter(|case| case.clear.is_none())
+    {
         let planner = build(subject, case)?;
         let task = Task { clearance: &Crowded, ..case.bench.task() };
         for path in [None, Some(&mut Path::default())] {

@@ -5,7 +5,7 @@ use crate::fixtures::{Bench, to_hand};
 use crate::reference::{Closure, RejectionSampler, closure};
 use regrasp_api::{
     ClosedChainSampler, Configuration, Contact, FingerIndex, FingerJoints, FingerSet, Hand, PerFinger, Pose,
-    PoseRequest, Random, Rotation, Slot, SurfaceParam, Target, TipRule, Vec3,
+    PoseRequest, Primitive, Random, Rotation, Slot, SurfaceParam, Target, TipRule, Vec3,
 };
 use std::sync::OnceLock;
 
@@ -34,8 +34,9 @@ pub(crate) struct Case {
     pub bench: &'static Bench,
     pub from: Configuration,
     pub goal: Goal,
-    /// A short way with nothing in it: most of these are to be solved.
-    pub easy: bool,
+    /// A way with nothing in it, of which most of the same kind are to be solved; `None` where something may
+    /// be in the way.
+    pub clear: Option<&'static str>,
 }
 
 /// The problems of a slot, made once.
@@ -61,6 +62,17 @@ fn somewhere(bench: &Bench, key: u64) -> Configuration {
     found.expect("nothing interrupts").expect("the kit's hands hold the kit's objects")
 }
 
+/// The same on the outside of the ring, where it bulges: into the hole a fingertip may touch at two places.
+fn outside(bench: &Bench, key: u64) -> Configuration {
+    let out = |contact: &Contact| {
+        !matches!(bench.world.object.primitive, Some(Primitive::Torus { ring_radius, .. })
+            if contact.p_OC.x.hypot(contact.p_OC.y) < 1.1 * ring_radius)
+    };
+    let all_out = |q: &Configuration| q.contacts.iter().all(|(_, contact)| contact.as_ref().is_none_or(out));
+    let found = (0..200).map(|i| somewhere(bench, key + 1000 * i)).find(all_out);
+    found.expect("most of the ring's surface is outside")
+}
+
 /// The joints of a hand whose fingertips stand on the contacts; `None` if one cannot.
 fn closed(bench: &Bench, X_HO: Pose, contacts: &PerFinger<Option<Contact>>) -> Option<Configuration> {
     let hand = &*bench.world.hand;
@@ -79,30 +91,64 @@ fn turned(X_HO: &Pose, shift: Vec3, turn: Vec3) -> Pose {
 fn transfers() -> Vec<Case> {
     let mut random = random(81);
     let mut cases = Vec::new();
-    let mut add = |bench, from: Configuration, shift: Vec3, turn: Vec3, easy| {
+    let mut add = |bench, from: Configuration, shift: Vec3, turn: Vec3, clear| {
         let goal = Goal::Transfer(turned(&from.X_HO, shift, turn));
-        cases.push(Case { bench, from, goal, easy });
+        cases.push(Case { bench, from, goal, clear });
     };
-    let point = Bench::point_sphere();
+    let (free, point) = (Bench::free_sphere(), Bench::point_sphere());
     for (key, bench) in benches().into_iter().chain([point, point]).enumerate() {
-        add(bench, somewhere(bench, key as u64), random.direction() * 1e-3, random.direction() * 0.03, true);
+        let (shift, turn) = (random.direction() * 1e-3, random.direction() * 0.03);
+        add(bench, somewhere(bench, key as u64), shift, turn, Some("short"));
     }
-    for (key, bench) in [Bench::free_sphere(), Bench::hand_sphere(), point].into_iter().enumerate() {
+    for (key, bench) in [free, Bench::hand_sphere(), point].into_iter().enumerate() {
         let from = somewhere(bench, 11 + key as u64);
-        add(bench, from, random.direction() * 5e-3, random.direction() * 0.4, false);
+        add(bench, from, random.direction() * 5e-3, random.direction() * 0.4, None);
     }
     // Up until a joint's limit stops it, sideways into a wall, and from a grasp that holds nothing.
-    for (open, walled) in [(Bench::free_sphere(), Bench::walled_sphere()), (point, Bench::walled_points())] {
-        add(open, ring(open), Vec3::new(0.0, 0.0, 0.09), Vec3::zeros(), false);
-        add(walled, ring(walled), Vec3::new(0.02, 0.0, 0.0), Vec3::zeros(), false);
-        add(open, slack(open), Vec3::new(0.0, 2e-3, 1e-3), Vec3::zeros(), false);
+    for (open, walled) in [(free, Bench::walled_sphere()), (point, Bench::walled_points())] {
+        add(open, ring(open), Vec3::new(0.0, 0.0, 0.09), Vec3::zeros(), None);
+        add(walled, ring(walled), Vec3::new(0.02, 0.0, 0.0), Vec3::zeros(), None);
+        add(open, slack(open), Vec3::new(0.0, 2e-3, 1e-3), Vec3::zeros(), None);
     }
     let soft = Bench::soft_sphere();
-    for (key, easy) in [(6, true), (14, false)] {
-        let (shift, turn) = if easy { (1e-3, 0.03) } else { (5e-3, 0.4) };
-        add(soft, somewhere(soft, key), random.direction() * shift, random.direction() * turn, easy);
+    for (key, clear) in [(6, Some("with two soft contacts to spare")), (14, None)] {
+        let (shift, turn) = if clear.is_some() { (1e-3, 0.03) } else { (5e-3, 0.4) };
+        add(soft, somewhere(soft, key), random.direction() * shift, random.direction() * turn, clear);
+    }
+    // Less than a step, and many of them with nothing on the way.
+    for (bench, up) in [(free, 8e-3), (Bench::free_bar(), 8e-3), (point, 8e-3), (Bench::point_bar(), 8e-3)] {
+        let from = if bench.is_ball() { ring(bench) } else { clasp(bench) };
+        add(
+            bench,
+            from.clone(),
+            Vec3::new(5e-5, 0.0, 1e-4),
+            Vec3::new(0.0, 2e-3, 0.0),
+            Some("shorter than a step"),
+        );
+        add(bench, from, Vec3::new(0.0, 0.0, up), Vec3::zeros(), Some("long, straight"));
+    }
+    for (key, bench, kind) in uneven() {
+        for turn in [random.direction() * 0.03, random.direction() * 0.25] {
+            let clear = (turn.norm() < 0.1).then_some(kind);
+            add(bench, outside(bench, 60 + key), random.direction() * 1e-3, turn, clear);
+        }
     }
     cases
+}
+
+/// Objects that are no balls: long boxes, and a ring that dents in and has a hole.
+fn uneven() -> [(u64, &'static Bench, &'static str); 4] {
+    let (bar, ring) = (Bench::free_bar(), Bench::free_ring());
+    [(0, bar, "on a long box"), (1, bar, "on a long box"), (2, ring, "on a ring"), (3, ring, "on a ring")]
+}
+
+/// Fingertips on the two widest faces of the bar, two on each, a little over their margin from its edges.
+fn clasp(bench: &Bench) -> Configuration {
+    let at = [[0.05, 3e-3, 0.03], [3e-3, 0.05, 0.02], [-0.05, -3e-3, 0.03], [-3e-3, -0.05, -0.03]];
+    let contact =
+        |finger: FingerIndex| Some(bench.surface.project(&Vec3::from(at[finger.index()]), None).contact);
+    let contacts = PerFinger::from_fn(4, contact);
+    closed(bench, Bench::center(), &contacts).expect("each place is within the finger's box")
 }
 
 /// Free fingertips on a ball in these directions.
@@ -144,33 +190,56 @@ fn grasps() -> Vec<Case> {
     for (key, bench) in benches().into_iter().enumerate() {
         let from = somewhere(bench, 20 + key as u64);
         let to = slid(bench, &from, 1e-3, 2e-3, &mut random);
-        cases.push(Case { bench, from, goal: Goal::Grasp(to.into()), easy: true });
+        cases.push(Case { bench, from, goal: Goal::Grasp(to.into()), clear: Some("short") });
     }
     // Far apart: limits, other fingers or loss of the grasp may be in the way.
     for key in 0..4 {
         let bench = [Bench::free_sphere(), Bench::hand_sphere()][key % 2];
         let (from, to) = (somewhere(bench, 30 + key as u64), somewhere(bench, 40 + key as u64));
-        cases.push(Case { bench, from, goal: Goal::Grasp(to.into()), easy: false });
+        cases.push(Case { bench, from, goal: Goal::Grasp(to.into()), clear: None });
     }
     let free = Bench::free_sphere();
     // Around the back of the finger's box, into another finger, and from a grasp that holds nothing.
     let [near, far] = around(-1.0);
     let (from, to) = (on_ball(free, near), on_ball(free, far));
-    cases.push(Case { bench: free, from, goal: Goal::Grasp(to.into()), easy: false });
+    cases.push(Case { bench: free, from, goal: Goal::Grasp(to.into()), clear: None });
     let [beside, through] = [[[1.0, 0.1, -0.2], [0.75, 0.65, 0.1]], [[0.6, 0.8, -0.1], [1.0, -0.1, 0.1]]];
     let [from, to] =
         [beside, through].map(|[a, b]| on_ball(free, [a, b, [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]));
-    cases.push(Case { bench: free, from, goal: Goal::Grasp(to.into()), easy: false });
+    cases.push(Case { bench: free, from, goal: Goal::Grasp(to.into()), clear: None });
     let (from, shift) = (slack(free), Vec3::new(0.0, 4e-3, 4e-3));
     let to = closed(free, turned(&from.X_HO, shift, Vec3::zeros()), &from.contacts).expect("it is near");
-    cases.push(Case { bench: free, from, goal: Goal::Grasp(to.into()), easy: false });
+    cases.push(Case { bench: free, from, goal: Goal::Grasp(to.into()), clear: None });
     let soft = Bench::soft_sphere();
     let (from, far) = (somewhere(soft, 24), somewhere(soft, 44));
     let to = slid(soft, &from, 1e-3, 2e-3, &mut random);
-    for (to, easy) in [(to, true), (far, false)] {
-        cases.push(Case { bench: soft, from: from.clone(), goal: Goal::Grasp(to.into()), easy });
+    for (to, clear) in [(to, Some("with soft contacts")), (far, None)] {
+        cases.push(Case { bench: soft, from: from.clone(), goal: Goal::Grasp(to.into()), clear });
     }
+    for (key, bench, kind) in uneven() {
+        let from = outside(bench, 70 + key);
+        let to = slid(bench, &from, 1e-3, 2e-3, &mut random);
+        cases.push(Case { bench, from, goal: Goal::Grasp(to.into()), clear: Some(kind) });
+    }
+    cases.extend(long_slides());
     cases
+}
+
+/// The object moves far and straight; one fingertip slides far over an object that rests.
+fn long_slides() -> [Case; 2] {
+    let free = Bench::free_sphere();
+    let [from, to] = [0.25, -0.85]
+        .map(|z| on_ball(free, [[1.0, 0.1, -0.2], [0.3, 0.9, z], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]));
+    let start = ring(free);
+    let up = closed(free, turned(&start.X_HO, Vec3::new(0.0, 0.0, 0.03), Vec3::zeros()), &start.contacts);
+    let case = |from, to: Configuration, kind| Case {
+        bench: free,
+        from,
+        goal: Goal::Grasp(to.into()),
+        clear: Some(kind),
+    };
+    let up = up.expect("30 mm are within the fingers' boxes");
+    [case(from, to, "one fingertip, long"), case(start, up, "long, straight")]
 }
 
 /// Directions of fingertips such that finger 0 passes `side` = ±1 along x on its shortest way from the first
@@ -189,10 +258,16 @@ fn around(side: f64) -> [[[f64; 3]; 4]; 2] {
 }
 
 /// The regrasp of `finger` that leads to the configuration `to`.
-fn regrasp(bench: &'static Bench, from: Configuration, to: &Configuration, finger: u8, easy: bool) -> Case {
+fn regrasp(
+    bench: &'static Bench,
+    from: Configuration,
+    to: &Configuration,
+    finger: u8,
+    clear: Option<&'static str>,
+) -> Case {
     let finger = FingerIndex(finger);
     let goal = Goal::Regrasp { finger, contact: to.contacts[finger], joints: to.joints[finger] };
-    Case { bench, from, goal, easy }
+    Case { bench, from, goal, clear }
 }
 
 fn regrasps() -> Vec<Case> {
@@ -203,29 +278,51 @@ fn regrasps() -> Vec<Case> {
     }
     let (free, walled) = (Bench::free_sphere(), Bench::walled_sphere());
     let [from, to] = around(-1.0).map(|directions| on_ball(free, directions));
-    cases.push(regrasp(free, from.clone(), &to, 0, false));
+    cases.push(regrasp(free, from.clone(), &to, 0, None));
     // To rest and back.
     let mut resting = from.clone();
     resting.contacts[FingerIndex(0)] = None;
     resting.joints[FingerIndex(0)] = free.world.hand.finger(FingerIndex(0)).rest;
-    cases.push(regrasp(free, from.clone(), &resting, 0, false));
-    cases.push(regrasp(free, resting, &to, 0, false));
+    cases.push(regrasp(free, from.clone(), &resting, 0, None));
+    cases.push(regrasp(free, resting, &to, 0, None));
     // Between ball and wall, and with a finger that the grasp needs.
     let [from, to] = around(1.0).map(|directions| on_ball(walled, directions));
-    cases.push(regrasp(walled, from, &to, 0, false));
+    cases.push(regrasp(walled, from, &to, 0, None));
     let from = slack(free);
     let to = slid(free, &from, 0.0, 6e-3, &mut random);
-    cases.push(regrasp(free, from, &to, 1, false));
+    cases.push(regrasp(free, from, &to, 1, None));
     // Two soft contacts hold while the third moves.
     let soft = (0..20).find_map(|i| short_regrasp(Bench::soft_sphere(), 130 + i, &mut random));
     cases.push(soft.expect("among the grasps of the ball is one that two soft contacts hold"));
+    for (key, bench, kind) in uneven() {
+        let short = (0..20).find_map(|i| short_regrasp(bench, 150 + 20 * key + i, &mut random));
+        cases.extend(short.map(|case| Case { clear: Some(kind), ..case }));
+    }
+    // Past the tip of another finger, and over the edge between two faces.
+    let past = [[0.6, 0.8, -0.1], [0.84, -0.5, 0.2]]
+        .map(|second| on_ball(free, [[1.0, 0.1, -0.2], second, [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]));
+    cases.push(regrasp(free, past[0].clone(), &past[1], 1, None));
+    cases.extend(over_an_edge());
     cases
+}
+
+/// One finger of a clasp from a wide face of the bar to a narrow one, and the other way round.
+fn over_an_edge() -> Vec<Case> {
+    let bar = Bench::free_bar();
+    let from = clasp(bar);
+    let finger = FingerIndex(1);
+    let mut to = from.clone();
+    let contact = bar.surface.project(&Vec3::new(-0.05, 8e-3, -5e-3), None).contact;
+    let p_HF = to_hand(&from.X_HO, &contact.tip_center(bar.radius()));
+    let Some(joints) = bar.world.hand.inverse(finger, &p_HF, &from.joints[finger]) else { return Vec::new() };
+    (to.contacts[finger], to.joints[finger]) = (Some(contact), joints);
+    vec![regrasp(bar, from.clone(), &to, 1, None), regrasp(bar, to, &from, 1, None)]
 }
 
 /// One finger to a contact 6 mm from its own, the others holding, the end free of collision; `None` if this
 /// key gives none.
 fn short_regrasp(bench: &'static Bench, key: u64, random: &mut Random) -> Option<Case> {
-    let from = somewhere(bench, key);
+    let from = outside(bench, key);
     let task = bench.task();
     let leaves = |finger: &FingerIndex| {
         closure(&task.grasp(&from, from.holding().without(*finger))) == Closure::Closed
@@ -238,5 +335,5 @@ fn short_regrasp(bench: &'static Bench, key: u64, random: &mut Random) -> Option
     (to.contacts[finger], to.joints[finger]) = (Some(contact), joints);
     let fits = task.clearance.finger_free(finger, &joints, &from.X_HO, TipRule::Touches).is_ok()
         && task.clearance.configuration_free(&to, FingerSet::only(finger), false).is_ok();
-    fits.then(|| regrasp(bench, from, &to, finger.0, true))
+    fits.then(|| regrasp(bench, from, &to, finger.0, Some("short")))
 }

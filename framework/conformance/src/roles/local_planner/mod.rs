@@ -48,6 +48,11 @@ macro_rules! laws {
                 check: answer::reached::<$kind>,
             },
             Law {
+                name: concat!($prefix, "-fraction"),
+                why: "the search takes the fraction for how far it came, and pays by it",
+                check: answer::fraction::<$kind>,
+            },
+            Law {
                 name: concat!($prefix, "-target"),
                 why: "a motion that stops beside its target leaves a gap in the plan",
                 check: answer::target::<$kind>,
@@ -86,6 +91,11 @@ macro_rules! laws {
                 name: concat!($prefix, "-pure"),
                 why: "motions are computed ahead on other threads, and the same plan must come out",
                 check: answer::planner_pure::<$kind>,
+            },
+            Law {
+                name: concat!($prefix, "-steps"),
+                why: "what lies between two states is looked at no closer than the resolution says",
+                check: way::steps::<$kind>,
             },
             Law {
                 name: concat!($prefix, "-limits"),

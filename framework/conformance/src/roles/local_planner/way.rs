@@ -4,8 +4,9 @@ use super::inspect::{Touch, instants};
 use super::{Journey, Kind, on_journeys};
 use crate::law::Subject;
 use crate::reference::{Closure, closure};
-use crate::report::{Finding, ensure};
+use crate::report::{Fault, Finding, ensure};
 use regrasp_api::{Body, BodyPair, Clearance, FingerIndex, Hand, Slot};
+use regrasp_audit::laws;
 
 use super::case::Goal;
 
@@ -18,6 +19,17 @@ fn moving(journey: &Journey) -> Option<FingerIndex> {
         Goal::Regrasp { finger, .. } => Some(finger),
         _ => None,
     }
+}
+
+pub(super) fn steps<K: Kind>(subject: &Subject<'_>) -> Finding {
+    on_journeys::<K>(subject, |journey| {
+        let (task, target) = (journey.case.bench.task(), journey.case.goal.target());
+        for (i, pair) in journey.path.states.windows(2).enumerate() {
+            let kept = laws::step_kept(&task, &target, &pair[0], &pair[1]);
+            kept.map_err(|fault| Fault::Broken(format!("after state {i}: {}", fault.what)))?;
+        }
+        Ok(())
+    })
 }
 
 pub(super) fn limits<K: Kind>(subject: &Subject<'_>) -> Finding {

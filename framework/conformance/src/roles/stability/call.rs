@@ -58,7 +58,8 @@ pub(super) fn no_false_stable(subject: &Subject<'_>) -> Finding {
     for i in 0..600 {
         let touches = grasps::random(&mut random, 1 + i % 5);
         let edges = pyramids(&touches);
-        for grasp in [grasp_of(&touches), pyramid_grasp(&touches, &edges)] {
+        let grained = grasps::grained(&touches, &random.direction());
+        for grasp in [grasp_of(&touches), pyramid_grasp(&touches, &edges), grained] {
             let wrong = verdict(&*test, &grasp)?.is_some_and(Stability::is_stable)
                 && closure(&grasp) == Closure::Open;
             ensure(!wrong, || format!("calls a grasp stable that is not: {touches:?}"))?;

@@ -1,11 +1,13 @@
 //! Certificates and margins, checked by arithmetic.
 
 use super::call::{build, verdict};
+use crate::fixtures::Bench;
 use crate::fixtures::grasps::{self, Touch, grasp_of};
-use crate::law::{Subject, context};
+use crate::law::{Subject, context, random};
 use crate::reference::center_and_length;
-use crate::report::{Finding, broken, ensure};
+use crate::report::{Fault, Finding, broken, ensure};
 use regrasp_api::{Assessment, Certificate, Grasp, Stability, Vec3};
+use regrasp_audit::laws;
 
 /// The assessments of clear and symmetric grasps.
 fn assessments(subject: &Subject<'_>) -> Finding<Vec<(Vec<Touch>, Assessment)>> {
@@ -48,6 +50,22 @@ pub(super) fn certificate(subject: &Subject<'_>) -> Finding {
         if let Some(fault) = fault {
             return broken(format!("{fault}: {found:?} for {touches:?}"));
         }
+    }
+    grained_certificate(subject)
+}
+
+/// The same where contacts have a grain, by the arithmetic of an audit.
+fn grained_certificate(subject: &Subject<'_>) -> Finding {
+    let (test, mut random) = (build(subject)?, random(33));
+    for i in 0..100 {
+        let grasp = grasps::grained(&grasps::random(&mut random, 3 + i % 3), &random.direction());
+        if verdict(&*test, &grasp)?.is_none() {
+            continue;
+        }
+        let found = test.assess(&grasp, None, None, &mut context(0))?;
+        let object = &Bench::free_sphere().world.object;
+        let kept = laws::certificate_kept(&grasp, object, test.criterion(), &found);
+        kept.map_err(|fault| Fault::Broken(format!("with a grain: {}", fault.what)))?;
     }
     Ok(())
 }

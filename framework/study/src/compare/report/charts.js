@@ -19,7 +19,7 @@ function solvedCurves(names, cells, width) {
     const title = drawn("title", {}, `${names[cell.variant]}: ${end} solved`);
     return drawn("path", { class: "curve", d, stroke: color, "stroke-dasharray": dashes || null }, title);
   });
-  const chart = picture(width, height, "share of runs solved after a time", ...levels, ...timeAxis(x, top, bottom), ...curves);
+  const chart = picture(width, height, "share of runs solved after a time", ...levels, ...axis(x, top, bottom, tickLabel), ...curves);
   return element("div", {}, chart, lineKey(names, cells));
 }
 
@@ -32,39 +32,51 @@ function lineKey(names, cells) {
   return element("div", { class: "key" }, ...entries);
 }
 
-/** Box plots of planning time on a logarithmic scale; where there is little room, names stand above their boxes. */
-function boxPlots(names, cells, width) {
-  const boxes = cells.filter((cell) => cell.box_plot);
+/** Box plots of planning time on a logarithmic scale. */
+function timeBoxes(names, cells, width) {
+  const boxes = cells.filter((cell) => cell.box_plot).map((cell) => [cell.variant, cell.box_plot]);
   if (boxes.length === 0) return nothing("No run was solved.");
-  const longest = Math.max(...boxes.map((cell) => names[cell.variant].length));
+  return boxPlots("planning times", names, boxes, width, duration, logScale, tickLabel);
+}
+
+/** Box plots of another measure on a linear scale. */
+function measureBoxes(names, measure, cells, width) {
+  const shown = measure.boxes.filter(([variant]) => cells.some((cell) => cell.variant === variant));
+  if (shown.length === 0) return nothing("No run has it.");
+  const text = unitText(measure.unit);
+  return boxPlots(measure.measure, names, shown, width, text, linearScale, text);
+}
+
+/** Box plots, a row a variant; where there is little room, names stand above their boxes. */
+function boxPlots(title, names, boxes, width, text, scaleOf, tickText) {
+  const longest = Math.max(...boxes.map(([variant]) => names[variant].length));
   const isNarrow = width < 480 || 6.6 * longest > 0.42 * width;
   const left = isNarrow ? 12 : 12 + 6.6 * longest;
   const [right, top, step] = [width - 18, isNarrow ? 0 : 4, isNarrow ? 42 : 28];
   const bottom = top + step * boxes.length;
-  const values = boxes.flatMap(({ box_plot: box }) => [...box.whiskers, ...box.outliers]);
-  const x = logScale(values, left, right);
-  const rows = boxes.map((cell, row) => {
+  const values = boxes.flatMap(([, box]) => [...box.whiskers, ...box.outliers]);
+  const x = scaleOf(values, left, right);
+  const rows = boxes.map(([variant, box], row) => {
     const y = top + step * (row + 0.5) + (isNarrow ? 8 : 0);
     const place = isNarrow ? { x: 0, y: y - 14 } : { x: left - 10, y: y + 4, "text-anchor": "end" };
-    const label = drawn("text", place, fitting(names[cell.variant], isNarrow ? width : left));
-    return drawn("g", { class: "box" }, label, ...boxPlot(cell, names[cell.variant], x.place, y));
+    const label = drawn("text", place, fitting(names[variant], isNarrow ? width : left));
+    return drawn("g", { class: "box" }, label, ...boxPlot(box, variant, names[variant], x.place, y, text));
   });
-  return picture(width, bottom + 26, "planning times", ...timeAxis(x, top, bottom), ...rows);
+  return picture(width, bottom + 26, title, ...axis(x, top, bottom, tickText), ...rows);
 }
 
-function boxPlot(cell, name, place, y) {
-  const { box_plot: box } = cell;
-  const { color } = look(cell.variant);
+function boxPlot(box, variant, name, place, y, text) {
+  const { color } = look(variant);
   const [first, median, third] = box.quartiles.map(place);
   const [low, high] = box.whiskers.map(place);
   const line = (x1, x2, dy1, dy2, width) => drawn("line", { x1, x2, y1: y + dy1, y2: y + dy2, stroke: color, "stroke-width": width });
-  const title = `${name}: median ${duration(box.quartiles[1])}, quartiles ${duration(box.quartiles[0])} and ${duration(box.quartiles[2])}, ${cell.successes} runs`;
+  const title = `${name}: median ${text(box.quartiles[1])}, quartiles ${text(box.quartiles[0])} and ${text(box.quartiles[2])}`;
   const body = { x: first, y: y - 8, width: Math.max(1, third - first), height: 16, rx: 2, fill: color, "fill-opacity": 0.22, stroke: color, "stroke-width": 1.3 };
   return [
     drawn("title", {}, title),
     line(low, first, 0, 0, 1.3), line(third, high, 0, 0, 1.3), line(low, low, -4, 4, 1.3), line(high, high, -4, 4, 1.3),
     drawn("rect", body), line(median, median, -8, 8, 3),
-    ...box.outliers.map((time) => drawn("circle", { cx: place(time), cy: y, r: 2, fill: "none", stroke: color })),
+    ...box.outliers.map((value) => drawn("circle", { cx: place(value), cy: y, r: 2, fill: "none", stroke: color })),
   ];
 }
 
@@ -112,35 +124,17 @@ function rejectionTable(names, cells, causes) {
   return table(["", ...used], rows, "rejections");
 }
 
-/** Every variant against every other: time of the row's divided by that of the column's. */
-function pairMatrix(names, cells, pairs) {
-  const found = new Map(pairs.flatMap((pair) => [[`${pair.a},${pair.b}`, { pair, turned: false }], [`${pair.b},${pair.a}`, { pair, turned: true }]]));
-  const rows = cells.map((row) => {
-    const values = cells.map((column) => pairCell(names, row, column, found.get(`${row.variant},${column.variant}`)));
-    return element("tr", {}, element("th", { scope: "row" }, names[row.variant]), ...values);
+/** Every question in every measure, with the verdict that the sentences tell. */
+function verdictMatrix(matrix, isShownRow) {
+  const rows = matrix.rows.filter(isShownRow).map((row) => {
+    const cells = row.answers.map(({ text, title, shown, better }) => {
+      const color = better > 0 ? "faster" : "slower";
+      const style = shown ? `background:rgba(var(--${better === 0 ? "many" : color}), ${better === 0 ? 0.12 : 0.3})` : null;
+      return element("td", { title, class: shown ? null : "none", style }, text);
+    });
+    return element("tr", {}, element("th", { scope: "row" }, row.subject), ...cells);
   });
-  const matrix = table(["", ...cells.map((cell) => names[cell.variant])], rows, "matrix");
-  // Even if all seeds point one way, p is 2 / 2^seeds, times the number of pairs.
-  const needed = Math.floor(Math.log2((2 * pairs.length) / 0.05)) + 1;
-  const isHopeless = Math.max(...pairs.map((pair) => pair.both)) < needed;
-  const warning = `With ${pairs.length} pairs no difference can show in fewer than ${needed} seeds that both solved.`;
-  return element("div", {}, isHopeless ? element("p", { class: "quiet small" }, warning) : null, matrix);
-}
-
-function pairCell(names, row, column, entry) {
-  if (!entry) return element("td", { class: "none" }, "");
-  const { pair, turned } = entry;
-  const [mine, theirs] = turned ? [pair.only[1], pair.only[0]] : pair.only;
-  const solving = `${pair.both} seeds solved by both, ${mine} by ${names[row.variant]} alone, ${theirs} by ${names[column.variant]} alone (${pValue(pair.solved_p)})`;
-  const shownSolving = pair.solved_p < 0.05 ? element("small", {}, mine > theirs ? "solves more" : "solves less") : null;
-  if (!pair.ratio) return element("td", { class: "none", title: `too few to compare times; ${solving}` }, "–", shownSolving);
-  const ratio = turned ? 1 / pair.ratio.value : pair.ratio.value;
-  const ends = turned ? [1 / pair.ratio.high, 1 / pair.ratio.low] : [pair.ratio.low, pair.ratio.high];
-  const title = `${names[row.variant]} takes ${digits(ratio)} (${ends.map(digits).join(" to ")}) times as long as ${names[column.variant]}, ${pValue(pair.time_p)}; ${solving}`;
-  const shown = pair.time_p < 0.05;
-  const strength = Math.min(0.6, 0.12 + 0.28 * Math.abs(Math.log2(ratio)));
-  const color = `rgba(var(--${ratio < 1 ? "faster" : "slower"}), ${strength.toFixed(3)})`;
-  return element("td", { title, class: shown ? null : "none", style: shown ? `background:${color}` : null }, shown ? `× ${digits(ratio)}` : `≈ ${digits(ratio)}`, shownSolving);
+  return table(["", ...matrix.measures], rows, "matrix");
 }
 
 /** The figures themselves. */

@@ -1,9 +1,9 @@
 //! What the page shows, as plain data.
 
-use super::pairs::{Pair, best, pairs};
+use super::verdicts::{Boxes, Matrix, best, boxes, matrix};
 use crate::compare::statistics::{BoxPlot, Estimate, ecdf, log_box_plot};
-use crate::compare::summary::finding;
-use crate::compare::{CLEARANCE, Cell, FRAMEWORK, Figure, LeftOut, Machine, RunStatus, Study, StudyScenario};
+use crate::compare::summary::{Finding, family_text, finding};
+use crate::compare::{CLEARANCE, Cell, FRAMEWORK, Family, Figure, LeftOut, Machine, RunStatus, Study};
 use regrasp_api::{Reason, Slot};
 use regrasp_run::scenario::PaperFigures;
 use serde::Serialize;
@@ -17,6 +17,8 @@ pub struct PageData<'a> {
     machines: &'a [Machine],
     started_s: u64,
     seeds: u64,
+    /// Which hypotheses were tested, and how; empty where none was.
+    family: String,
     varied: Vec<&'static str>,
     variants: Vec<VariantData<'a>>,
     /// Names of those who take time, in the order in which they are drawn.
@@ -40,12 +42,13 @@ struct ScenarioData<'a> {
     summary: &'a str,
     source: &'a str,
     paper: Option<&'a PaperFigures>,
-    finding: String,
+    finding: Finding,
     /// SVG that [`super::strip`] made; it holds no text of users.
     strip: Option<&'a str>,
     left_out: Vec<&'a LeftOut>,
     cells: Vec<CellData>,
-    pairs: Vec<Pair>,
+    matrix: Matrix,
+    boxes: Vec<Boxes>,
     best: Vec<usize>,
 }
 
@@ -92,8 +95,12 @@ fn roles() -> Vec<&'static str> {
 }
 
 /// Gathers what the page shows.
-pub fn page_data<'a>(study: &'a Study, rows: &[Vec<Cell<'a>>], strips: &'a [Option<String>]) -> PageData<'a> {
-    let scenarios = study.scenarios.iter().zip(rows).enumerate();
+pub fn page_data<'a>(
+    study: &'a Study,
+    rows: &[Vec<Cell<'a>>],
+    family: &Family,
+    strips: &'a [Option<String>],
+) -> PageData<'a> {
     let strip = |k: usize| strips.get(k).and_then(Option::as_deref);
     PageData {
         command: study.command.join(" "),
@@ -101,6 +108,7 @@ pub fn page_data<'a>(study: &'a Study, rows: &[Vec<Cell<'a>>], strips: &'a [Opti
         machines: &study.machines,
         started_s: study.started_s,
         seeds: study.seeds.count,
+        family: family_text(study, family, &quoted),
         varied: study.varied.iter().map(|slot| slot.name()).collect(),
         variants: study
             .variants
@@ -112,31 +120,39 @@ pub fn page_data<'a>(study: &'a Study, rows: &[Vec<Cell<'a>>], strips: &'a [Opti
             .collect(),
         roles: roles(),
         causes: Reason::ALL.map(Reason::name).to_vec(),
-        scenarios: scenarios
-            .map(|(k, (scenario, row))| scenario_data(study, scenario, row, strip(k)))
+        scenarios: rows
+            .iter()
+            .enumerate()
+            .map(|(k, row)| scenario_data(study, k, row, family, strip(k)))
             .collect(),
         remark: remark(rows),
     }
 }
 
+fn quoted(name: &str) -> String {
+    format!("“{name}”")
+}
+
 fn scenario_data<'a>(
     study: &'a Study,
-    scenario: &'a StudyScenario,
+    k: usize,
     row: &[Cell<'a>],
+    family: &Family,
     strip: Option<&'a str>,
 ) -> ScenarioData<'a> {
-    let pairs = pairs(row);
+    let scenario = &study.scenarios[k];
     ScenarioData {
         name: &scenario.name,
         summary: &scenario.summary,
         source: &scenario.source,
         paper: scenario.paper.as_ref(),
-        finding: finding(row, &|name| format!("“{name}”")),
+        finding: finding(study, k, row, family, &quoted),
         strip,
         left_out: study.left_out.iter().filter(|pair| pair.scenario == scenario.name).collect(),
         cells: row.iter().map(cell_data).collect(),
-        best: best(row, &pairs),
-        pairs,
+        matrix: matrix(study, k, family, &quoted),
+        boxes: boxes(row, &study.hypotheses.measures),
+        best: best(row, k, family),
     }
 }
 

@@ -70,11 +70,37 @@ function logScale(values, low, high) {
   return { place, ticks, from, to };
 }
 
-/** The axis of a logarithmic scale of seconds, with lines up to `top`. */
-function timeAxis(scale, top, bottom) {
+/** A linear scale from these values to the paper, with ticks at 1, 2 or 5 times a power of ten. */
+function linearScale(values, low, high) {
+  let [from, to] = [Math.min(...values), Math.max(...values)];
+  if (to - from < 1e-9 * Math.max(Math.abs(from), Math.abs(to), 1e-9)) {
+    const room = 0.1 * Math.abs(to) || 1;
+    [from, to] = [from - room, to + room];
+  }
+  const rough = (to - from) / Math.max(2, (high - low) / 70);
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map((factor) => factor * power).find((width) => width >= rough);
+  const room = 0.04 * (to - from);
+  const place = (value) => low + ((high - low) * (value - from + room)) / (to - from + 2 * room);
+  const ticks = [];
+  for (let k = Math.ceil((from - room) / step); k * step <= to + room; k += 1) ticks.push(k * step);
+  return { place, ticks, from, to };
+}
+
+/** How numbers of a unit are told. */
+function unitText(unit) {
+  const plain = (value) => (value < 0 ? `-${digits(-value)}` : digits(value)).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
+  if (unit === "s") return (s) => (s === 0 ? "0 s" : tickLabel(s));
+  if (unit === "m") return (m) => `${plain(1e3 * m)} mm`;
+  if (unit === "share") return (share) => `${plain(1e2 * share)} %`;
+  return (value) => (unit ? `${plain(value)} ${unit}` : plain(value));
+}
+
+/** The axis of a scale, with lines up to `top`. */
+function axis(scale, top, bottom, text) {
   return scale.ticks.flatMap((tick) => {
     const x = scale.place(tick);
-    const label = drawn("text", { class: "tick", x, y: bottom + 16, "text-anchor": "middle" }, tickLabel(tick));
+    const label = drawn("text", { class: "tick", x, y: bottom + 16, "text-anchor": "middle" }, text(tick));
     return [drawn("line", { class: "rule", x1: x, x2: x, y1: top, y2: bottom }), label];
   });
 }

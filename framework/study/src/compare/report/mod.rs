@@ -4,12 +4,12 @@
 //! which no `<` is left, and the script puts it in as text, never as HTML.
 
 mod data;
-mod pairs;
 mod strip;
+mod verdicts;
 
 pub use strip::strip;
 
-use super::{Cell, Study};
+use super::{Cell, Family, Study};
 use data::page_data;
 
 const PAGE: &str = include_str!("page.html");
@@ -22,9 +22,9 @@ const SCRIPT: [&str; 3] = [include_str!("draw.js"), include_str!("charts.js"), i
 ///
 /// `strips` are pictures of the scenarios, as [`strip`] makes them, in the order of the study's scenarios;
 /// `None` where there is none.
-pub fn html(study: &Study, rows: &[Vec<Cell<'_>>], strips: &[Option<String>]) -> String {
-    let data =
-        serde_json::to_string(&page_data(study, rows, strips)).expect("plain data is written without fault");
+pub fn html(study: &Study, rows: &[Vec<Cell<'_>>], family: &Family, strips: &[Option<String>]) -> String {
+    let data = page_data(study, rows, family, strips);
+    let data = serde_json::to_string(&data).expect("plain data is written without fault");
     let parts = [
         ("/*STYLE*/", format!("{}{STYLE}", regrasp_view::picture::STYLE)),
         // Within a script a `<` could end it (`</script>`) or hide its end (`<!--`); in JSON it only occurs

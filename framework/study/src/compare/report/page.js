@@ -79,7 +79,7 @@ function winnerCell(scenario, variant) {
   const fastest = Math.min(...scenario.cells.map((other) => other.median_of_all_s ?? Infinity));
   const place = scenario.best.indexOf(variant);
   const shade = 0.55 * Math.max(0, 1 - Math.log2(cell.median_of_all_s / fastest) / 2.5);
-  const title = ["the fastest", "not shown to differ from the fastest"][Math.min(place, 1)] ?? `${digits(cell.median_of_all_s / fastest)} times the fastest`;
+  const title = ["the fastest at the median", "not shown to differ from the fastest"][Math.min(place, 1)] ?? `median ${digits(cell.median_of_all_s / fastest)} times that of the fastest`;
   return element("td", { class: ["best", "tie"][Math.min(place, 1)] ?? null, title, style: `background:rgba(var(--heat), ${shade.toFixed(3)})` }, duration(cell.median_of_all_s), solved);
 }
 
@@ -87,7 +87,7 @@ function drawOverview() {
   const scenarios = shownScenarios();
   document.getElementById("overview").replaceChildren(
     element("h2", {}, data.variants.length > 1 ? "Which combination wins where" : "All scenarios"),
-    element("p", { class: "quiet small" }, "Median time over all runs, one that fails counting as endless, and how many were solved. Thick frame: the fastest of the scenario; thin frame: not shown to differ from it (all pairs tested, Holm). The stronger the colour, the closer to the fastest."),
+    element("p", { class: "quiet small" }, "Median time over all runs, one that fails counting as endless, and how many were solved. Thick frame: the fastest of the scenario; thin frame: compared with it, and no difference in time or in solving is shown. The stronger the colour, the closer to the fastest."),
     winners(scenarios),
     ...remark());
 }
@@ -109,7 +109,7 @@ function chart(title, content, kind = "chart") {
 function scenarioCard(scenario) {
   const cells = shownCells(scenario);
   const card = element("section", { class: "card" });
-  const facts = element("div", {}, element("h2", {}, scenario.name), element("p", {}, scenario.summary), element("p", { class: "finding" }, scenario.finding),
+  const facts = element("div", {}, element("h2", {}, scenario.name), element("p", {}, scenario.summary), findingOf(scenario.finding),
     ...scenario.left_out.map((pair) => element("p", { class: "quiet small" }, `Not planned by “${pair.variant}”: ${pair.reason}`)),
     element("p", { class: "quiet small" }, scenario.source));
   const strip = element("div", { class: "strip" });
@@ -119,12 +119,28 @@ function scenarioCard(scenario) {
   const width = Math.max(280, chartWidth());
   card.append(element("div", { class: "charts" },
     chart("solved after a time (% of all runs)", solvedCurves(names, cells, width)),
-    chart("planning time of solved runs", boxPlots(names, cells, width)),
+    chart("planning time of solved runs", timeBoxes(names, cells, width)),
     chart("planning time by who spent it (mean of the solved runs)", roleBars(names, cells, data.roles, width)),
     chart("rejections by cause, mean of a run", rejectionTable(names, cells, data.causes)),
-    cells.length > 1 ? chart("time of the row divided by time of the column (×: a difference is shown; ≈: none could be)", pairMatrix(names, cells, scenario.pairs), "chart wide") : null,
-    chart("figures", figureTable(names, scenario, cells), "chart wide")));
+    scenario.matrix.rows.length > 0 ? chart("differences (a number: shown; same: within the band; not shown; too few seeds)", verdictMatrix(scenario.matrix, isShownRow), "chart wide") : null,
+    chart("figures", figureTable(names, scenario, cells), "chart wide"),
+    ...furtherBoxes(scenario, cells, width)));
   return card;
+}
+
+/** What may be said, in words. */
+function findingOf({ lead, lines }) {
+  const list = lines.map((line) => element("li", {}, line));
+  return element("div", { class: "finding" }, element("p", {}, lead), list.length > 0 ? element("ul", {}, ...list) : null);
+}
+
+/** Whether all variants that a row of the matrix is about are shown. */
+function isShownRow(row) {
+  return row.variants.every(isShown);
+}
+
+function furtherBoxes(scenario, cells, width) {
+  return scenario.boxes.map((measure) => chart(`${measure.measure}, solved runs`, measureBoxes(names, measure, cells, width), "chart further"));
 }
 
 /** Width of one of two columns, or of the only one on a narrow page. */
@@ -135,9 +151,10 @@ function chartWidth() {
 
 function drawNotes() {
   const notes = [
-    "Solved: the plan reaches all goals and the verifier accepts it. Intervals hold 95 %: Wilson's for shares, bootstrap for medians, Hodges-Lehmann for ratios of times.",
-    "Times are compared on the seeds that both solved, by Wilcoxon's signed-rank test on the logarithms; who solves more by McNemar's exact test. p-values are corrected for their number (Holm): in the sentences over the variants, in the matrix over all pairs. Where none could be shown, there may be a difference all the same.",
-    "Box plots: median, quartiles, whiskers to the last run within 1.5 boxes (on the logarithmic scale). Point at anything for its figures; all of them are in summary.csv and runs.csv.",
+    ...(data.family ? [data.family] : []),
+    "Solved: the plan reaches all goals and the verifier accepts it. Intervals hold 95 %: Wilson's for shares, bootstrap for medians.",
+    "Each measure is compared seed by seed by Wilcoxon's signed-rank test; who solves more by McNemar's exact test; factors by the same test on contrasts within a seed. Differences are estimates of Hodges and Lehmann (of shares: Newcombe's), each with the interval that belongs to its corrected test: it leaves out zero where a difference is shown, and nowhere else. Where none is shown there may be one all the same. Planning times: a run that fails counts as the whole time limit, or without one as the longest run. Other measures: seeds on which both succeeded.",
+    "Box plots: median, quartiles, whiskers to the last run within 1.5 boxes (on the logarithmic scale). Point at anything for its figures; all of them are in summary.csv, comparisons.csv and runs.csv.",
   ];
   document.getElementById("notes").append(element("h3", {}, "How to read this"), ...notes.map((text) => element("p", { class: "quiet small" }, text)));
 }

@@ -5,8 +5,10 @@
 //! 95 %.
 
 mod bootstrap;
+mod contrast;
 mod discordant;
 mod holm;
+mod newcombe;
 mod normal;
 mod order;
 mod paired;
@@ -15,8 +17,10 @@ mod walsh;
 mod wilson;
 
 pub use bootstrap::*;
+pub use contrast::*;
 pub use discordant::*;
 pub use holm::*;
+pub use newcombe::*;
 pub use order::*;
 pub use paired::*;
 pub use signed_rank::*;

@@ -16,6 +16,18 @@ pub fn upper_tail(z: f64) -> f64 {
     if z < 0.0 { 1.0 - tail } else { tail }
 }
 
+/// The value that a standard normal variable exceeds with probability `tail` (above 0, below 1): the inverse
+/// of [`upper_tail`], by bisection.
+pub fn upper_point(tail: f64) -> f64 {
+    let (mut low, mut high) = (-40.0, 40.0);
+    // Each step halves what is left; after 100 nothing is.
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if upper_tail(middle) > tail { low = middle } else { high = middle }
+    }
+    high
+}
+
 fn density(x: f64) -> f64 {
     (-0.5 * x * x).exp() / std::f64::consts::TAU.sqrt()
 }
@@ -39,6 +51,14 @@ fn fraction(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn points_are_where_their_tails_are() {
+        assert!((upper_point(0.025) - Z_95).abs() < 1e-11);
+        // scipy 1.17.1: scipy.stats.norm.isf(1e-6).
+        assert!((upper_point(1e-6) - 4.753_424_308_822_899).abs() < 1e-9);
+        assert!((upper_point(0.9) + upper_point(0.1)).abs() < 1e-11);
+    }
 
     #[test]
     fn tails_are_those_of_the_tables() {

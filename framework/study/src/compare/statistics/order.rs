@@ -41,10 +41,26 @@ pub struct BoxPlot {
 /// for no positive values.
 pub fn log_box_plot(values: impl IntoIterator<Item = f64>) -> Option<BoxPlot> {
     let values = sorted(values.into_iter().filter(|&value| value > 0.0));
-    let quartiles = [0.25, 0.5, 0.75].map(|share| quantile(&values, share));
+    of_sorted(&values, |first, third| {
+        let reach = (third / first).powf(1.5);
+        [first / reach, third * reach]
+    })
+}
+
+/// The box plot of values on a linear scale; `None` for no values.
+pub fn box_plot(values: impl IntoIterator<Item = f64>) -> Option<BoxPlot> {
+    of_sorted(&sorted(values), |first, third| {
+        let reach = 1.5 * (third - first);
+        [first - reach, third + reach]
+    })
+}
+
+/// The box plot of values in rising order; the fences come from the outer quartiles.
+fn of_sorted(values: &[f64], fences: impl Fn(f64, f64) -> [f64; 2]) -> Option<BoxPlot> {
+    let quartiles = [0.25, 0.5, 0.75].map(|share| quantile(values, share));
     let [Some(first), Some(middle), Some(third)] = quartiles else { return None };
-    let reach = (third / first).powf(1.5);
-    let is_inside = |value: &&f64| (first / reach..=third * reach).contains(*value);
+    let [low, high] = fences(first, third);
+    let is_inside = |value: &&f64| (low..=high).contains(*value);
     let inside: Vec<f64> = values.iter().filter(is_inside).copied().collect();
     Some(BoxPlot {
         quartiles: [first, middle, third],
@@ -93,6 +109,8 @@ mod tests {
         assert_eq!(found.outliers, [50.0]);
         assert_eq!(found.whiskers, [1.0, 1.4]);
         assert_eq!(log_box_plot([0.0]), None);
+        let found = box_plot([-1.0, 0.0, 0.0, 1.0, 40.0]).unwrap();
+        assert_eq!((found.whiskers, found.outliers), ([-1.0, 1.0], vec![40.0]));
         assert_eq!(log_box_plot([2.0]).unwrap().whiskers, [2.0, 2.0]);
     }
 

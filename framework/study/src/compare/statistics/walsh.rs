@@ -1,6 +1,6 @@
 //! How large paired differences are.
 
-use super::normal::Z_95;
+use super::normal::upper_point;
 use super::signed_rank::distribution;
 use super::{ALPHA, Estimate, sorted};
 
@@ -15,12 +15,18 @@ const EXACT: usize = 60;
 /// Statistics 1963. The interval holds those shifts that the signed-rank test would not refuse (J. W.
 /// Tukey's; M. Hollander, D. A. Wolfe, "Nonparametric Statistical Methods", 1973, 3.3).
 pub fn hodges_lehmann(differences: &[f64]) -> Option<Estimate> {
+    hodges_lehmann_at(differences, ALPHA)
+}
+
+/// The same with an interval that misses the true value with probability `alpha` (above 0, below 1) instead
+/// of 0.05.
+pub fn hodges_lehmann_at(differences: &[f64], alpha: f64) -> Option<Estimate> {
     let values = sorted(differences.iter().copied());
     let n = values.len();
     let averages = n * (n + 1) / 2;
     let last = averages.checked_sub(1)?;
     let value = 0.5 * (walsh(&values, last / 2) + walsh(&values, last.div_ceil(2)));
-    let (low, high) = match skipped(n) {
+    let (low, high) = match skipped(n, alpha) {
         Some(k) => (walsh(&values, k), walsh(&values, last - k)),
         None => (f64::NEG_INFINITY, f64::INFINITY),
     };
@@ -29,18 +35,19 @@ pub fn hodges_lehmann(differences: &[f64]) -> Option<Estimate> {
 }
 
 /// How many of the ordered averages lie outside of the interval on each side; `None` if even all of them do
-/// not reach 95 %.
-fn skipped(n: usize) -> Option<usize> {
+/// not reach the confidence 1 - `alpha`.
+fn skipped(n: usize, alpha: f64) -> Option<usize> {
     if n > EXACT {
         let n = n as f64;
         let (mean, deviation) = (n * (n + 1.0) / 4.0, (n * (n + 1.0) * (2.0 * n + 1.0) / 24.0).sqrt());
-        return Some((mean - Z_95 * deviation - 0.5).floor() as usize);
+        let place = (mean - upper_point(alpha / 2.0) * deviation - 0.5).floor();
+        return (place >= 0.0).then_some(place as usize);
     }
     let ranks: Vec<usize> = (1..=n).collect();
     let mut tail = 0.0;
     let mut is_rare = |chance: &f64| {
         tail += chance;
-        tail <= ALPHA / 2.0
+        tail <= alpha / 2.0
     };
     distribution(&ranks).iter().take_while(|chance| is_rare(chance)).count().checked_sub(1)
 }

@@ -10,13 +10,18 @@ use super::normal::Z_95;
 /// the interval that textbooks give it is right for few runs and at 0 and 1, where a study of planners mostly
 /// is.
 pub fn wilson(hits: usize, runs: usize) -> Option<Estimate> {
+    wilson_at(hits, runs, Z_95)
+}
+
+/// The same with an interval of `z` standard deviations on each side.
+pub(super) fn wilson_at(hits: usize, runs: usize, z: f64) -> Option<Estimate> {
     if runs == 0 {
         return None;
     }
     let (n, p) = (runs as f64, hits as f64 / runs as f64);
-    let z2 = Z_95 * Z_95;
+    let z2 = z * z;
     let middle = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
-    let half = Z_95 / (1.0 + z2 / n) * (p * (1.0 - p) / n + z2 / (4.0 * n * n)).sqrt();
+    let half = z / (1.0 + z2 / n) * (p * (1.0 - p) / n + z2 / (4.0 * n * n)).sqrt();
     // Rounding must not put an end on the wrong side of the value.
     Some(Estimate { value: p, low: (middle - half).clamp(0.0, p), high: (middle + half).clamp(p, 1.0) })
 }

@@ -1,23 +1,25 @@
 //! `summary.md`.
 
-use super::finding;
-use super::number::{count_text, milliseconds, p_text, percent, ratio_text};
-use crate::compare::{Cell, Figure, LeftOut, RunStatus, Study, StudyScenario};
+use super::number::{count_text, milliseconds, p_text, percent};
+use super::{Finding, family_text, finding, signed, subject};
+use crate::compare::{Cell, Comparison, Family, Figure, LeftOut, RunStatus, Study, StudyScenario, Verdict};
 
 /// How the figures were made.
 const NOTES: &str = include_str!("notes.md");
 
-/// The text of `summary.md`: for each scenario a sentence of result and a table.
-pub fn markdown(study: &Study, rows: &[Vec<Cell<'_>>]) -> String {
+/// The text of `summary.md`: for each scenario what may be said, and a table.
+pub fn markdown(study: &Study, rows: &[Vec<Cell<'_>>], family: &Family) -> String {
     let head = format!(
         "# {} on {}, {}\n",
         counted(study.variants.len(), "variant"),
         counted(study.scenarios.len(), "scenario"),
         counted(study.seeds.count as usize, "seed")
     );
-    let sections = study.scenarios.iter().zip(rows);
-    let sections: String = sections.map(|(scenario, row)| section(study, scenario, row)).collect();
-    format!("{head}{}{sections}\n{NOTES}", command(study))
+    let stated = family_text(study, family, &code);
+    let stated = if stated.is_empty() { stated } else { format!("\n{stated}\n") };
+    let sections = rows.iter().enumerate();
+    let sections: String = sections.map(|(k, row)| section(study, k, row, family)).collect();
+    format!("{head}{}{stated}{sections}\n{NOTES}", command(study))
 }
 
 fn counted(number: usize, noun: &str) -> String {
@@ -30,66 +32,82 @@ fn command(study: &Study) -> String {
     format!("\n{fence}\n{}\n{fence}\n", study.command.join(" ").replace(fence, "'''"))
 }
 
-fn section(study: &Study, scenario: &StudyScenario, row: &[Cell<'_>]) -> String {
+fn section(study: &Study, k: usize, row: &[Cell<'_>], family: &Family) -> String {
+    let scenario = &study.scenarios[k];
     let left_out = study.left_out.iter().filter(|pair| pair.scenario == scenario.name);
+    let Finding { lead, lines } = finding(study, k, row, family, &code);
+    let lines: String = lines.iter().map(|line| format!("- {line}\n")).collect();
+    let lines = if lines.is_empty() { lines } else { format!("{lines}\n") };
     format!(
-        "\n## {}\n\n{}\n\n{}\n\n{}{}",
+        "\n## {}\n\n{}\n\n{lead}\n\n{lines}{}{}{}",
         plain(&scenario.name),
         plain(&scenario.summary),
-        finding(row, &code),
         table(scenario, row),
+        differences(study, k, family),
         left_out.map(left_out_line).collect::<String>()
     )
+}
+
+/// The matrix: for every question and measure the difference with its interval, and what may be said.
+fn differences(study: &Study, k: usize, family: &Family) -> String {
+    let head = ["", "measure", "seeds", "difference (interval)", "verdict", "p"];
+    let mut lines = vec![head.map(str::to_owned).to_vec()];
+    lines.extend(family.on(k).iter().map(|found| {
+        vec![
+            subject(study, &found.question, &code),
+            plain(&found.measure.noun()),
+            found.pairs.to_string(),
+            signed(found),
+            verdict(found),
+            p_text(found.p_holm),
+        ]
+    }));
+    if lines.len() == 1 { String::new() } else { format!("\n{}", aligned(&lines)) }
+}
+
+fn verdict(found: &Comparison) -> String {
+    let [more, less] = found.measure.words();
+    match found.verdict {
+        Verdict::More => more.into(),
+        Verdict::Less => less.into(),
+        Verdict::Same => "the same".into(),
+        Verdict::NotShown => "not shown".into(),
+        Verdict::TooFew => "too few seeds".into(),
+    }
 }
 
 fn left_out_line(pair: &LeftOut) -> String {
     format!("\nNot planned by {}: {}\n", code(&pair.variant), plain(&pair.reason))
 }
 
-const HEAD: [&str; 10] = [
-    "variant",
-    "solved",
-    "% (95 %)",
-    "ms (95 %)",
-    "times as long (95 %)",
-    "effect",
-    "p",
-    "generated",
-    "graph",
-    "regrasps",
-];
+const HEAD: [&str; 7] = ["variant", "solved", "% (95 %)", "ms (95 %)", "generated", "graph", "regrasps"];
 
 fn table(scenario: &StudyScenario, row: &[Cell<'_>]) -> String {
-    let mut lines: Vec<[String; 10]> = vec![HEAD.map(str::to_owned)];
+    let mut lines: Vec<Vec<String>> = vec![HEAD.map(str::to_owned).to_vec()];
     lines.extend(row.iter().map(cells));
     if let Some(paper) = &scenario.paper {
         let name = format!("*published: {}, averages*", plain(&paper.example));
         let none = String::new;
         let time = format!("{}", paper.time_s * 1e3);
-        let counts = [paper.generated_nodes, paper.graph_nodes].map(|count| count.to_string());
-        let [generated, graph] = counts;
-        lines.push([name, none(), none(), time, none(), none(), none(), generated, graph, none()]);
+        let [generated, graph] = [paper.generated_nodes, paper.graph_nodes].map(|count| count.to_string());
+        lines.push(vec![name, none(), none(), time, generated, graph, none()]);
     }
     aligned(&lines)
 }
 
-fn cells(cell: &Cell<'_>) -> [String; 10] {
+fn cells(cell: &Cell<'_>) -> Vec<String> {
     let median =
         |figure: Figure| cell.median(figure).map(|found| count_text(found.value)).unwrap_or_default();
-    let paired = cell.compared.as_ref();
     let failed = [RunStatus::Error, RunStatus::Panic, RunStatus::Crash]
         .map(|status| cell.count(status))
         .iter()
         .sum::<usize>();
     let failed = if failed > 0 { format!(", {}", counted(failed, "error")) } else { String::new() };
-    [
+    vec![
         code(&cell.variant.name),
         format!("{}/{}{failed}", cell.successes().count(), cell.runs.len()),
         cell.success().map(percent).unwrap_or_default(),
         cell.median(Figure::Planning).map(milliseconds).unwrap_or_default(),
-        paired.and_then(|compared| compared.paired.ratio).map(ratio_text).unwrap_or_default(),
-        paired.map(|compared| format!("{:+.2}", compared.paired.effect)).unwrap_or_default(),
-        paired.map(|compared| p_text(compared.time_p)).unwrap_or_default(),
         median(Figure::GeneratedNodes),
         median(Figure::GraphNodes),
         median(Figure::Regrasps),
@@ -97,10 +115,10 @@ fn cells(cell: &Cell<'_>) -> [String; 10] {
 }
 
 /// The table with its columns lined up, the first flush left, the others flush right.
-fn aligned(lines: &[[String; 10]]) -> String {
+fn aligned(lines: &[Vec<String>]) -> String {
     let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..HEAD.len()).map(width).collect();
-    let text = |line: &[String; 10]| {
+    let widths: Vec<usize> = (0..lines[0].len()).map(width).collect();
+    let text = |line: &Vec<String>| {
         let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| match column {
             0 => format!(" {cell:<width$} "),
             _ => format!(" {cell:>width$} "),

@@ -3,7 +3,7 @@
 use crate::compare::statistics::Estimate;
 
 /// Three significant digits, or all digits before the point.
-fn three_digits(value: f64) -> String {
+pub fn three_digits(value: f64) -> String {
     let digits_before = if value == 0.0 { 1.0 } else { value.abs().log10().floor() + 1.0 };
     let digits_after = (3.0 - digits_before).clamp(0.0, 12.0) as usize;
     format!("{value:.digits_after$}")
@@ -21,11 +21,6 @@ fn with_interval(estimate: Estimate, text: fn(f64) -> String) -> String {
 /// Seconds as milliseconds with the interval, without the unit.
 pub fn milliseconds(estimate: Estimate) -> String {
     with_interval(estimate.map(|s| 1e3 * s), three_digits)
-}
-
-/// A ratio with its interval.
-pub fn ratio_text(estimate: Estimate) -> String {
-    with_interval(estimate, three_digits)
 }
 
 /// A share in percent with its interval.
@@ -68,7 +63,7 @@ mod tests {
     #[test]
     fn intervals_that_are_not_known_say_so() {
         let open = Estimate { value: 2.0, low: 0.0, high: f64::INFINITY };
-        assert_eq!(ratio_text(open), "2.00 (interval unknown: too few)");
+        assert_eq!(milliseconds(open.map(|s| 1e-3 * s)), "2.00 (interval unknown: too few)");
         assert_eq!(milliseconds(Estimate { value: 0.009, low: 0.008, high: 0.01 }), "9.00 (8.00 to 10.0)");
     }
 }

@@ -1,5 +1,8 @@
 //! The laws of samplers.
 
+mod close;
+mod spread;
+
 use crate::fixtures::{Bench, to_object};
 use crate::law::{Always, Law, Subject, context, counted_once, pure, random};
 use crate::reference::{RejectionSampler, closest_on_mesh};
@@ -34,14 +37,19 @@ pub(crate) const LAWS: &[Law] = &[
     },
     Law { name: "sample-varies", why: "a sampler that repeats itself never covers the space", check: varies },
     Law {
+        name: "sample-spreads",
+        why: "poses and sides of the object that are never drawn are never reached",
+        check: spread::spreads,
+    },
+    Law {
         name: "close-exact",
         why: "closing chains for given contacts must keep contacts and pose as they are given",
-        check: close_exact,
+        check: close::close_exact,
     },
     Law {
         name: "close-refuses",
         why: "a finger that cannot reach is an answer, not an error",
-        check: close_refuses,
+        check: close::close_refuses,
     },
     Law {
         name: "sampler-reasons",
@@ -70,8 +78,21 @@ pub(super) fn build(subject: &Subject<'_>, bench: &Bench) -> Finding<Box<dyn Clo
     Ok(build(&subject.demands.settings, &bench.parts())?)
 }
 
-fn benches() -> [&'static Bench; 4] {
+/// The benches of every law.
+fn usual() -> [&'static Bench; 4] {
     [Bench::free_sphere(), Bench::hand_sphere(), Bench::hand_ellipsoid(), Bench::soft_sphere()]
+}
+
+/// Those, and the ones with a peculiarity.
+fn benches() -> impl Iterator<Item = &'static Bench> {
+    let peculiar = [
+        Bench::point_sphere(),
+        Bench::free_bar(),
+        Bench::free_ring(),
+        Bench::two_ways_sphere(),
+        Bench::posted_sphere(),
+    ];
+    usual().into_iter().chain(peculiar)
 }
 
 /// Which fingers hold in one sample or another.
@@ -98,6 +119,12 @@ fn on_samples(
     for bench in benches() {
         let (sampler, near) = (build(subject, bench)?, somewhere(bench, 1));
         let turned = Pose { rotation: random(71).rotation(), ..Bench::center() };
+        // Often enough to draw the object into the post.
+        let often = match bench.name {
+            "posted_sphere" => 8,
+            name if usual().iter().any(|usual| usual.name == name) => 2,
+            _ => 1,
+        };
         let requests = [
             PoseRequest::Anywhere,
             PoseRequest::At(turned),
@@ -105,7 +132,7 @@ fn on_samples(
         ];
         for (i, request) in requests.iter().enumerate() {
             for (k, holding) in holdings(bench).into_iter().enumerate() {
-                for key in 0..2 {
+                for key in 0..often {
                     let mut context = context(key + 10 * (i + 10 * k) as u64);
                     if let Some(q) = sampler.sample(&bench.task(), *request, holding, &mut context)? {
                         let at = |fault: Fault| fault.at(&format!("`{}`, request {i}", bench.name));
@@ -201,45 +228,8 @@ fn varies(subject: &Subject<'_>) -> Finding {
     ensure(alike == 0, || format!("{alike} of {} samples of different streams are alike", found.len()))
 }
 
-fn close_exact(subject: &Subject<'_>) -> Finding {
-    for bench in benches() {
-        let (sampler, near) = (build(subject, bench)?, somewhere(bench, 2));
-        let mut moved = near.X_HO;
-        moved.translation.vector.x += 5e-4;
-        for X_HO in [near.X_HO, moved] {
-            let found = sampler.close(&bench.task(), &X_HO, &near.contacts, &near, &mut context(0))?;
-            let Some(q) = found else {
-                // The moved pose may be out of reach; the pose at which they are closed is not.
-                ensure(X_HO != near.X_HO, || "does not close what is closed".into())?;
-                continue;
-            };
-            ensure(q.X_HO == X_HO && q.contacts == near.contacts, || "changes pose or contacts".into())?;
-            for (finger, joints) in q.joints.iter() {
-                let tip = bench.world.hand.tip_center(finger, joints);
-                let gap = (q.contact_tip_center(finger, bench.radius()).unwrap_or(tip) - tip).norm();
-                ensure(gap <= CLOSED, || format!("finger {} is {gap:e} m off its contact", finger.0))?;
-                let jump = joints.max_difference(&near.joints[finger]);
-                ensure(jump <= 0.2, || {
-                    format!("finger {} jumps by {jump} for a motion of 0.5 mm", finger.0)
-                })?;
-            }
-        }
-    }
-    Ok(())
-}
-
-fn close_refuses(subject: &Subject<'_>) -> Finding {
-    for bench in benches() {
-        let (sampler, near) = (build(subject, bench)?, somewhere(bench, 3));
-        let far = Pose::translation(0.0, 0.0, 1.0);
-        let found = sampler.close(&bench.task(), &far, &near.contacts, &near, &mut context(0))?;
-        ensure(found.is_none(), || format!("closes chains a metre away: {found:?}"))?;
-    }
-    Ok(())
-}
-
 fn counts_reasons(subject: &Subject<'_>) -> Finding {
-    for bench in benches() {
+    for bench in usual() {
         let sampler = build(subject, bench)?;
         let (mut context, far) = (context(0), PoseRequest::At(Pose::translation(0.0, 0.0, 1.0)));
         let found = sampler.sample(&bench.task(), far, bench.fingers(), &mut context)?;
@@ -273,7 +263,7 @@ fn interrupt(subject: &Subject<'_>) -> Finding {
 }
 
 fn sampler_pure(subject: &Subject<'_>) -> Finding {
-    for bench in benches() {
+    for bench in usual() {
         let sampler = build(subject, bench)?;
         pure(4, |i| {
             let mut context = context(i as u64);
