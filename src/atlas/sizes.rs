@@ -1,6 +1,7 @@
 //! Sizes on the command line.
 
-/// The sizes (m) that a text names: `20..80mm`, `30,50mm`, `0.05m`; a range is taken in `steps` equal steps.
+/// The sizes (m) that a text names: `20..80mm`, `30,50mm`, `0.05m`; a range is taken in `steps` equal
+/// steps, to a hundredth of a millimetre.
 pub fn sizes(text: &str, steps: usize) -> Result<Vec<f64>, String> {
     let refuse = |why: &str| format!("`--size {text}`: {why}; give `20..80mm`, `30,50mm` or `0.05m`");
     let trimmed = text.trim();
@@ -26,7 +27,10 @@ pub fn sizes(text: &str, steps: usize) -> Result<Vec<f64>, String> {
         return Ok(vec![low * unit]);
     }
     let step = |k: usize| (low + (high - low) * k as f64 / (steps - 1) as f64) * unit;
-    Ok((0..steps).map(step).collect())
+    // To a hundredth of a millimetre, as tables show it.
+    let mut all: Vec<f64> = (0..steps).map(|k| (step(k) * 1e5).round() / 1e5).collect();
+    all.dedup();
+    Ok(all)
 }
 
 #[cfg(test)]

@@ -99,7 +99,7 @@ impl Explorer<'_> {
             attempts: Vec::new(),
         };
         let refused = |message: String| Ok(Some(Cell { cause: Some(message), ..empty.clone() }));
-        let text = self.member.scenario(self.hand, self.wish);
+        let text = self.member.scenario(self.hand, self.wish.nodes);
         let scenario = match from_text(&self.member.title(), &text, Path::new(""), self.registry) {
             Ok(scenario) => scenario,
             Err(error) => return refused(error.refusal().message),

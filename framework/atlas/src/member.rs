@@ -1,6 +1,6 @@
 //! One hand with one object.
 
-use crate::{AtlasHand, Wish};
+use crate::AtlasHand;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -76,13 +76,14 @@ impl Member {
         format!("{} with a {} of {size} mm, friction {}{mass}", self.hand, self.shape.name(), self.friction)
     }
 
-    /// Its size (mm), without the last digits of a double.
+    /// Its size (mm), to a hundredth.
     pub fn size_mm(&self) -> f64 {
-        (self.size * 1e9).round() * 1e-6
+        (self.size * 1e5).round() / 100.0
     }
 
-    /// Its scenario as JSON text, with a start and a goal that count for nothing.
-    pub(crate) fn scenario(&self, hand: &AtlasHand, wish: &Wish) -> String {
+    /// Its scenario as JSON text, with a start and a goal that count for nothing, for searches of at most this
+    /// many nodes.
+    pub(crate) fn scenario(&self, hand: &AtlasHand, nodes: usize) -> String {
         let mut scenario = json!({
             "name": self.title(),
             "hand": hand.choice,
@@ -94,7 +95,7 @@ impl Member {
             },
             "start": { "pose": {} },
             "goal": [{ "pose": { "position": [1.0, 0.0, 0.0] } }],
-            "limits": { "budget": { "max_nodes": wish.nodes } },
+            "limits": { "budget": { "max_nodes": nodes } },
         });
         if self.mass.is_some() {
             scenario["hold"] = json!({});

@@ -114,8 +114,8 @@ fn convert(path: &Path, mut robot: Robot, options: &HandOptions) -> Result<ReadH
     report.shapes = shaper.notes;
     report.ignored.extend(robot.ignored.iter().cloned());
     plausible::check(&tree, &fingers, &description, &mut report.notes)?;
-    needs.check(path, options)?;
     check_count(description.finger.len(), &report)?;
+    needs.check(path, options)?;
     finish(&mut description, &mut report)?;
     Ok(ReadHand { description, report })
 }
