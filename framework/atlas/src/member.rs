@@ -81,8 +81,7 @@ impl Member {
         (self.size * 1e5).round() / 100.0
     }
 
-    /// Its scenario as JSON text, with a start and a goal that count for nothing, for searches of at most this
-    /// many nodes.
+    /// Its scenario as JSON text for searches of at most this many nodes; start and goal count for nothing.
     pub(crate) fn scenario(&self, hand: &AtlasHand, nodes: usize) -> String {
         let mut scenario = json!({
             "name": self.title(),

@@ -115,8 +115,8 @@ impl Curves<'_> {
     fn key(&self) -> String {
         let entry = |(k, hand): (usize, &AtlasHand)| {
             format!(
-                "<span><svg viewBox=\"-12 -8 24 16\" aria-hidden=\"true\"><line class=\"curve c{0}\" x1=\"-12\" \
-                 y1=\"0\" x2=\"12\" y2=\"0\"/>{1}</svg>{2}</span>",
+                "<span><svg viewBox=\"-12 -8 24 16\" aria-hidden=\"true\">\
+                 <line class=\"curve c{0}\" x1=\"-12\" y1=\"0\" x2=\"12\" y2=\"0\"/>{1}</svg>{2}</span>",
                 k % COLOURS,
                 mark(k, 0.0, 0.0, ""),
                 escape(&hand.name)

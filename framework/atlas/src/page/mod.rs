@@ -27,7 +27,8 @@ pub fn page(wish: &Wish, hands: &[AtlasHand], cells: &[Cell], summary: &Summary)
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=\"color-scheme\" content=\"light dark\">\n<meta name=\"generator\" content=\"regrasp atlas\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n\
+         <meta name=\"generator\" content=\"regrasp atlas\">\n\
          <title>Atlas – Regrasp</title>\n<link rel=\"icon\" href=\"data:,\">\n<style>\n{STYLE}</style>\n</head>\n\
          <body>\n{}</body>\n</html>\n",
         body.concat()

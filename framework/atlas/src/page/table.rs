@@ -8,8 +8,8 @@ use crate::{Cell, CellSummary, Found, Summary};
 pub(super) fn table(cells: &[Cell], summary: &Summary) -> String {
     let rows: String = cells.iter().zip(&summary.cells).map(|(cell, of)| row(cell, of)).collect();
     format!(
-        "<section>\n<h2>All numbers</h2>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"All \
-         numbers\"><table>\n<thead><tr><th scope=\"col\">hand</th><th scope=\"col\">shape</th>\
+        "<section>\n<h2>All numbers</h2>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" \
+         aria-label=\"All numbers\"><table>\n<thead><tr><th scope=\"col\">hand</th><th scope=\"col\">shape</th>\
          <th scope=\"col\">size (mm)</th><th scope=\"col\">friction</th><th scope=\"col\">mass (kg)</th>\
          <th scope=\"col\">reached (95 % interval)</th><th scope=\"col\">to 90°</th>\
          <th scope=\"col\">90 to 135°</th><th scope=\"col\">135 to 180°</th>\
