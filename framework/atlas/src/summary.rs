@@ -73,7 +73,8 @@ impl CellSummary {
 fn regrasps<'a>(attempts: impl IntoIterator<Item = &'a Attempt>) -> (Option<f64>, Option<f64>) {
     let counts = attempts.into_iter().filter_map(|attempt| attempt.regrasps).map(|n| n as f64);
     let counts = sorted(counts);
-    (quantile(&counts, 0.5), quantile(&counts, 0.9))
+    let tenths = |q: f64| quantile(&counts, q).map(|count| (count * 10.0).round() / 10.0);
+    (tenths(0.5), tenths(0.9))
 }
 
 /// The turns of one hand with objects of one shape about axes of one sector, by angles of one band: of all

@@ -81,11 +81,12 @@ fn each_goal_of_a_chain_begins_where_the_one_before_ended() {
     for pair in plans.windows(2) {
         let end = pair[0].segments.last().unwrap().states.last().unwrap();
         let begin = &pair[1].segments.first().unwrap().states[0];
-        // The start's grasp is given as points and joints, and made exact again: to a micrometre.
+        // The start's grasp is given as points and joints, and made exact again: the object stays, joints are
+        // found anew near what they were.
         let apart = |k: usize| (end.object.position[k] - begin.object.position[k]).abs();
         assert!((0..3).all(|k| apart(k) < 1e-9));
         for (a, b) in end.joints.iter().flatten().zip(begin.joints.iter().flatten()) {
-            assert!((a - b).abs() < 1e-3, "{a} {b}");
+            assert!((a - b).abs() < 0.05, "{a} {b}");
         }
     }
 }

@@ -29,6 +29,9 @@ const GRAIN: f64 = 1e-4;
 /// The same over a whole stretch.
 const MOST_HALVINGS: usize = 10_000;
 
+/// Where a pair was closest before anything is known.
+const NOWHERE: Gap = Gap { distance: 0.0, direction: Vec3::new(0.0, 0.0, 0.0), facet: 0 };
+
 /// The distances of all pairs.
 pub(crate) struct ClearanceCheck<'s> {
     hand: &'s Chains,
@@ -86,7 +89,6 @@ impl<'s> ClearanceCheck<'s> {
     /// `smallest` is a distance (m) that some pair of the plan is known to have, infinite where none is: what
     /// is farther apart need not be exact.
     pub(crate) fn new(hand: &'s Chains, scene: &'s Scene, demanded: f64, smallest: f64) -> Self {
-        let nowhere = Gap { distance: 0.0, direction: Vec3::zeros(), facet: 0 };
         Self {
             hand,
             scene,
@@ -95,7 +97,7 @@ impl<'s> ClearanceCheck<'s> {
             smallest,
             motions: Motions::new(scene),
             lower: vec![f64::NEG_INFINITY; scene.pairs.len()],
-            nearest: vec![nowhere; scene.pairs.len()],
+            nearest: vec![NOWHERE; scene.pairs.len()],
             supports: vec![Default::default(); scene.pairs.len()],
             bounds: Vec::new(),
             spare: Frames::new(hand),
@@ -245,8 +247,9 @@ impl<'s> ClearanceCheck<'s> {
     }
 
     /// The closest pair of those compared at a state, with its exact distance (m), beside the moving
-    /// fingertip of a regrasp and the object.
+    /// fingertip of a regrasp and the object. To the last digit it depends on the state alone.
     pub(crate) fn closest(&mut self, leg: &Leg<'_>, frames: &Frames) -> Option<(f64, BodyPair)> {
+        self.nearest.fill(NOWHERE);
         let mut bounds = std::mem::take(&mut self.bounds);
         bounds.clear();
         let pairs = 0..self.scene.pairs.len();
