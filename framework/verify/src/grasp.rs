@@ -77,7 +77,6 @@ impl GraspVerifier {
             of: self,
             clearance: ClearanceCheck::new(&self.hand, &self.scene, self.tolerances.clearance, f64::INFINITY),
             frames: Frames::new(&self.hand),
-            facets: [0; MAX_FINGERS],
             stability: StabilityCheck::new(&self.claims, self.weight_H),
             holding,
             holds: HoldsCheck::new(&self.claims, self.weight_H, self.mass, true),
@@ -90,7 +89,6 @@ pub struct GraspJudge<'v> {
     of: &'v GraspVerifier,
     clearance: ClearanceCheck<'v>,
     frames: Frames,
-    facets: [u32; MAX_FINGERS],
     stability: StabilityCheck,
     /// Where the claim is that joints' efforts hold the object; `None` within where it has no meaning.
     holding: Option<Option<HoldingCheck>>,
@@ -128,8 +126,7 @@ impl GraspJudge<'_> {
         for (finger, claimed) in leg.states[0].record.contacts.iter().enumerate() {
             let Some(claimed) = claimed else { continue };
             let p_OTip = self.frames.p_OTip(finger);
-            let touch = Touch::find(scene, &p_OTip, hand.tip_radius, self.facets[finger]);
-            self.facets[finger] = touch.facet;
+            let touch = Touch::find(scene, &p_OTip, hand.tip_radius, 0);
             let off = deviation(hand, &self.frames, finger, claimed, &touch);
             let residual = touch.gap.abs().max(off.on_object).max(off.on_fingertip);
             gauge("closure", "m", Side::AtMost, tolerances.closure, residual)?;
