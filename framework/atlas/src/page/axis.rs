@@ -43,10 +43,10 @@ impl Frame {
         let (left, right, bottom) = (ROOM[0], width - ROOM[1], height - ROOM[3]);
         for value in steps(self.top) {
             let y = self.y_at(value);
-            let _ = write!(
+            let _ = writeln!(
                 text,
                 "<line class=\"rule\" x1=\"{left}\" y1=\"{y:.1}\" x2=\"{right}\" y2=\"{y:.1}\"/>\
-                 <text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{value}</text>\n",
+                 <text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{value}</text>",
                 left - 6.0,
                 y + 4.0
             );
@@ -54,17 +54,17 @@ impl Frame {
         let every = ticks.len().div_ceil(MOST_TICKS);
         for value in ticks.iter().step_by(every.max(1)) {
             let x = self.x_at(*value);
-            let _ = write!(
+            let _ = writeln!(
                 text,
                 "<line class=\"axis\" x1=\"{x:.1}\" y1=\"{bottom}\" x2=\"{x:.1}\" y2=\"{:.1}\"/>\
-                 <text class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\n",
+                 <text class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
                 bottom + 5.0,
                 bottom + 18.0,
                 (value * 1e3).round() / 1e3
             );
         }
         let middle = (ROOM[2] + bottom) / 2.0;
-        let _ = write!(
+        let _ = writeln!(
             text,
             "<line class=\"axis\" x1=\"{left}\" y1=\"{bottom}\" x2=\"{right}\" y2=\"{bottom}\"/>\
              <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\

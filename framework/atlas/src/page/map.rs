@@ -65,9 +65,9 @@ fn disc(bins: &[&&Bin], is_up: bool, x: f64) -> String {
         text += &part(bin);
     }
     let side = if is_up { "+z" } else { "-z" };
-    let _ = write!(
+    let _ = writeln!(
         text,
-        "<circle class=\"rim\" r=\"{RADIUS}\"/><text class=\"tick\" x=\"-66\" y=\"-62\">{side}</text></g>\n"
+        "<circle class=\"rim\" r=\"{RADIUS}\"/><text class=\"tick\" x=\"-66\" y=\"-62\">{side}</text></g>"
     );
     text
 }

@@ -37,7 +37,7 @@ pub fn page(wish: &Wish, hands: &[AtlasHand], cells: &[Cell], summary: &Summary)
 
 /// What the atlas is about, and what its figures mean.
 fn head(wish: &Wish, hands: &[AtlasHand], cells: &[Cell]) -> String {
-    let names: Vec<String> = hands.iter().map(|hand| named(hand)).collect();
+    let names: Vec<String> = hands.iter().map(named).collect();
     let goals: usize = cells.iter().map(|cell| cell.attempts.len()).sum();
     let asked = match wish.masses.is_empty() {
         true => "Grasps must close, whatever the force.",
