@@ -33,7 +33,7 @@ steps = np.diff(column("time"))
 times = PASSING + np.concatenate([[0.0], np.cumsum(np.where(steps > 0, steps, PASSING))])
 clock = np.arange(0.0, times[-1] + PASSING, model.opt.timestep)
 motors = [model.actuator(index).name for index in range(model.nu)]
-joints = np.stack([np.interp(clock, times, column(name)) for name in motors], axis=1)
+joints = np.stack([np.interp(clock, times, column(f"joint.{name}")) for name in motors], axis=1)
 targets = np.stack([np.interp(clock, times, column(f"target.{name}")) for name in motors], axis=1)
 # Motors damp their speed; so that they damp what differs from the plan's, they aim ahead.
 ahead = -model.actuator_biasprm[:, 2] / model.actuator_gainprm[:, 0]

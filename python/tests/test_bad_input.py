@@ -144,7 +144,10 @@ def test_points_that_lie_nowhere_are_no_paths() -> None:
 
 def test_ctrl_c_ends_a_long_batch() -> None:
     import _thread
+    import signal
 
+    # A shell that starts programs in the background has them ignore it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     normals = np.random.default_rng(0).normal(size=(60_000, 4, 3))
     timer = threading.Timer(0.3, _thread.interrupt_main)
     start = time.perf_counter()
