@@ -68,7 +68,7 @@ pub fn verify_on(plan: &Plan, threads: usize) -> Verdict {
     let (hand, object, scene, legs) = (&hand, &object, &scene, &legs[..]);
     let mut look = Look { plan, hand, object, scene, legs, has_forces, smallest: f64::INFINITY };
     let stretches = stretches(legs);
-    look.smallest = smallest(&look, &stretches);
+    look.smallest = smallest(&look, &stretches) + ROUNDING;
     let mut seen = look.nothing();
     let mut slip = SlipCheck::new(hand, &problem.limits.tolerances, plan.claims.transfer_law);
     seen.contacts.look_all_over(threads);
@@ -84,6 +84,10 @@ pub fn verify_on(plan: &Plan, threads: usize) -> Verdict {
     );
     gather(&look, seen, slip)
 }
+
+/// What is added to the smallest distance (m): its pair must be met again, however the bounds of balls are
+/// rounded.
+const ROUNDING: f64 = 1e-9;
 
 /// The smallest distance at the first states of stretches (m).
 fn smallest(look: &Look<'_>, stretches: &[Stretch]) -> f64 {
