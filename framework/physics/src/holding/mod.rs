@@ -1,7 +1,9 @@
 //! Forces that hold a load inside friction cones and within the joints' efforts: which there are, and how
 //! little friction they need.
 
+mod barrier;
 mod bearing;
+mod ldl;
 mod load;
 mod newton;
 mod share;

@@ -1,8 +1,10 @@
 //! Forces that balance a load inside cones and efforts: Newton's method to their analytic centre, or a proof
 //! that there are none.
 
+use super::barrier::{Barrier, Sums};
 use super::bearing::{Bearing, Exerted};
-use nalgebra::{Cholesky, Matrix4, Matrix6, Vector4, Vector6};
+use super::ldl::Ldl;
+use nalgebra::Vector6;
 use regrasp_api::MAX_FINGERS;
 
 /// The most Newton steps; about ten from the start, two or three from a centre nearby.
@@ -38,17 +40,17 @@ pub enum Balanced {
 
 /// The linear response of forces to a change of the load.
 pub(crate) struct Response {
-    factor: Cholesky<f64, nalgebra::U6>,
-    inverses: [Matrix4<f64>; MAX_FINGERS],
+    square: Ldl<6>,
+    barriers: Barriers,
 }
 
 impl Response {
     /// The forces after a change of what is wanted.
     pub fn after(&self, search: &Search<'_>, forces: &Forces, change: &Vector6<f64>) -> Forces {
-        let multiplier = self.factor.solve(change);
+        let multiplier = Vector6::from(self.square.solve((*change).into()));
         let mut forces = *forces;
-        for (i, bearing) in search.bearings.iter().enumerate() {
-            forces[i] += self.inverses[i] * (bearing.map.transpose() * multiplier);
+        for (x, barrier) in forces.iter_mut().zip(&self.barriers).take(search.bearings.len()) {
+            *x += barrier.follow(&multiplier);
         }
         forces
     }
@@ -61,24 +63,16 @@ pub(crate) struct Search<'a> {
     pub share: f64,
 }
 
-/// Gradient and Hessian of one contact's barrier, cone and bounds apart.
-struct Barrier {
-    cone_gradient: Vector4<f64>,
-    cone_hessian: Matrix4<f64>,
-    gradient: Vector4<f64>,
-    inverse: Matrix4<f64>,
-}
-
 struct Step {
     multiplier: Vector6<f64>,
     change: Forces,
     /// The largest multiple of the change that stays inside.
     reach: f64,
     decrement: f64,
-    /// The most power that forces within all bounds have on the multiplier; infinite where this step proves
-    /// no bound.
-    power: f64,
 }
+
+/// The barriers of all contacts, where the last step left them.
+type Barriers = [Barrier; MAX_FINGERS];
 
 impl Search<'_> {
     /// Where searches begin: pressing along the normals.
@@ -113,13 +107,9 @@ impl Search<'_> {
 
     /// How forces follow a change of the wrench that is wanted, by H⁻¹Gᵀ(G H⁻¹Gᵀ)⁻¹.
     pub fn response(&self, forces: &Forces) -> Option<Response> {
-        let mut S = Matrix6::zeros();
-        let mut inverses = [Matrix4::zeros(); MAX_FINGERS];
-        for ((inverse, x), bearing) in inverses.iter_mut().zip(forces).zip(self.bearings) {
-            *inverse = Barrier::new(bearing, self.share, x)?.inverse;
-            S += bearing.map * *inverse * bearing.map.transpose();
-        }
-        Some(Response { factor: Cholesky::new(S)?, inverses })
+        let mut barriers = [Barrier::NOTHING; MAX_FINGERS];
+        let sums = self.sums(&mut barriers, forces, &Vector6::zeros())?;
+        Some(Response { square: Ldl::new(&sums.square)?, barriers })
     }
 
     /// The wrench that forces lack (force, torque over length).
@@ -137,10 +127,10 @@ impl Search<'_> {
         if self.bearings.is_empty() {
             return if *wanted == Vector6::zeros() { Balanced::Yes(forces) } else { Balanced::Unknown };
         }
-        let mut feasible = false;
+        let (mut feasible, mut barriers) = (false, [Barrier::NOTHING; MAX_FINGERS]);
         for _ in 0..MAX_STEPS {
-            let Some(step) = self.step(&forces, wanted) else { return Balanced::Unknown };
-            if !feasible && wanted.dot(&step.multiplier) > step.power * (1.0 + 1e-9) {
+            let Some(step) = self.step(&mut barriers, &forces, wanted) else { return Balanced::Unknown };
+            if !feasible && self.refutes(&barriers, &step, wanted) {
                 return Balanced::No(step.multiplier);
             }
             let t = self.advance(&mut forces, &step, feasible);
@@ -150,7 +140,7 @@ impl Search<'_> {
             }
             if t < SHORT
                 && !feasible
-                && let Some(proof) = self.recentre(&mut forces, wanted)
+                && let Some(proof) = self.recentre(&mut barriers, &mut forces, wanted)
             {
                 return Balanced::No(proof);
             }
@@ -173,11 +163,16 @@ impl Search<'_> {
     ///
     /// With it the search follows the path of centres from the wrench of the start to the one that is wanted:
     /// where that is out of reach, the path ends at the boundary, and the multiplier there is a proof.
-    fn recentre(&self, forces: &mut Forces, wanted: &Vector6<f64>) -> Option<Vector6<f64>> {
+    fn recentre(
+        &self,
+        barriers: &mut Barriers,
+        forces: &mut Forces,
+        wanted: &Vector6<f64>,
+    ) -> Option<Vector6<f64>> {
         for _ in 0..RECENTRING {
             let here = -self.residual(forces, &Vector6::zeros());
-            let step = self.step(forces, &here)?;
-            if wanted.dot(&step.multiplier) > step.power * (1.0 + 1e-9) {
+            let step = self.step(barriers, forces, &here)?;
+            if self.refutes(barriers, &step, wanted) {
                 return Some(step.multiplier);
             }
             self.advance(forces, &step, true);
@@ -193,120 +188,45 @@ impl Search<'_> {
         self.inside(forces) && self.residual(forces, wanted).amax() <= BALANCED * largest
     }
 
-    fn step(&self, forces: &Forces, wanted: &Vector6<f64>) -> Option<Step> {
-        let mut S = Matrix6::zeros();
-        let mut right = *wanted;
-        let mut barriers: [Option<Barrier>; MAX_FINGERS] = [const { None }; MAX_FINGERS];
-        for ((barrier, x), bearing) in barriers.iter_mut().zip(forces).zip(self.bearings) {
-            let made = Barrier::new(bearing, self.share, x)?;
-            let mapped = bearing.map * made.inverse;
-            S += mapped * bearing.map.transpose();
-            right += mapped * made.gradient - bearing.map * x;
-            *barrier = Some(made);
+    /// Whether the load has more power on a step's multiplier than any forces within the bounds.
+    fn refutes(&self, barriers: &Barriers, step: &Step, wanted: &Vector6<f64>) -> bool {
+        let load = wanted.dot(&step.multiplier);
+        if load <= 0.0 {
+            return false;
         }
-        let multiplier = Cholesky::new(S)?.solve(&right);
+        let each = self.bearings.iter().zip(barriers).zip(&step.change);
+        let power: f64 = each.map(|((bearing, barrier), d)| barrier.power(bearing, d)).sum();
+        load > power * (1.0 + 1e-9)
+    }
+
+    fn step(&self, barriers: &mut Barriers, forces: &Forces, wanted: &Vector6<f64>) -> Option<Step> {
+        let sums = self.sums(barriers, forces, wanted)?;
         let mut step = Step {
-            multiplier,
+            multiplier: Ldl::new(&sums.square)?.solve(sums.right.into()).into(),
             change: [Exerted::zeros(); MAX_FINGERS],
             reach: f64::INFINITY,
             decrement: 0.0,
-            power: 0.0,
         };
         for (i, bearing) in self.bearings.iter().enumerate() {
-            let barrier = barriers[i].as_ref()?;
-            let seen = bearing.map.transpose() * multiplier;
-            let uphill = seen - barrier.gradient;
-            let d = barrier.inverse * uphill;
-            step.reach = step.reach.min(reach(bearing, self.share, &forces[i], &d));
-            step.decrement += uphill.dot(&d);
-            step.power += barrier.power(bearing, self.share, &forces[i], &d);
+            let (d, decrement) = barriers[i].change(&step.multiplier);
+            step.reach = step.reach.min(barriers[i].reach(bearing, &forces[i], &d));
+            step.decrement += decrement;
             step.change[i] = d;
         }
         step.decrement = step.decrement.max(0.0).sqrt();
         Some(step)
     }
-}
 
-impl Barrier {
-    /// -log(s²μ² f_n² - |f_t|²) - Σ log(1 - (a·x)²) - log(1 - f_n/most).
-    fn new(bearing: &Bearing, share: f64, x: &Exerted) -> Option<Self> {
-        let sigma = share * bearing.mu;
-        let z = Vector4::new(sigma * sigma * x[0], -x[1], -x[2], -x[3]);
-        let q = z.dot(x);
-        let cone_gradient = z * (-2.0 / q);
-        let mut cone_hessian = z * z.transpose() * (4.0 / (q * q));
-        cone_hessian[(0, 0)] -= 2.0 * sigma * sigma / q;
-        (1..4).for_each(|k| cone_hessian[(k, k)] += 2.0 / q);
-        let (mut gradient, mut hessian) = (cone_gradient, cone_hessian);
-        for row in bearing.rows() {
-            let (first, second) = slopes(row.dot(x));
-            gradient += row * first;
-            hessian += row * row.transpose() * second;
+    /// The contacts' barriers at these forces, summed.
+    fn sums(&self, barriers: &mut Barriers, forces: &Forces, wanted: &Vector6<f64>) -> Option<Sums> {
+        let mut sums = Sums { square: [[0.0; 6]; 6], right: *wanted };
+        for ((barrier, x), bearing) in barriers.iter_mut().zip(forces).zip(self.bearings) {
+            if !barrier.set(bearing, self.share, x) {
+                return None;
+            }
+            barrier.add(&mut sums);
+            sums.right -= bearing.map * x;
         }
-        if bearing.most.is_finite() {
-            let slope = 1.0 / (bearing.most - x[0]);
-            gradient[0] += slope;
-            hessian[(0, 0)] += slope * slope;
-        }
-        if !bearing.has_torsion() {
-            // The coordinate does nothing and stays 0.
-            (0..4).for_each(|k| (hessian[(3, k)], hessian[(k, 3)]) = (0.0, 0.0));
-            hessian[(3, 3)] = 2.0 / q;
-            gradient[3] = 0.0;
-        }
-        let inverse = Cholesky::new(hessian)?.inverse();
-        Some(Self { cone_gradient, cone_hessian, gradient, inverse })
+        Some(sums)
     }
-
-    /// The most power that this contact's forces can have on the step's multiplier, by weak duality.
-    ///
-    /// What the contact sees of the multiplier is exactly a part v in the cone's coordinates and parts λ_j
-    /// along the efforts' rows. Where v is in the polar of the cone it has no power, and the rest has at most
-    /// Σ |λ_j| within the efforts.
-    fn power(&self, bearing: &Bearing, share: f64, x: &Exerted, d: &Exerted) -> f64 {
-        let v = self.cone_gradient + self.cone_hessian * d;
-        let tangential = v.fixed_rows::<3>(1).norm();
-        let over = v[0] + share * bearing.mu * tangential;
-        let mut power = 0.0;
-        if over > 0.0 {
-            // Only the bound of the normal force limits what the cone gives along v.
-            power += over * bearing.most;
-        }
-        for row in bearing.rows() {
-            let (first, second) = slopes(row.dot(x));
-            power += (first + second * row.dot(d)).abs();
-        }
-        if bearing.most.is_finite() {
-            let slope = 1.0 / (bearing.most - x[0]);
-            power += (slope + slope * slope * d[0]).max(0.0) * bearing.most;
-        }
-        power
-    }
-}
-
-/// First and second derivative of -log(1 - u²).
-fn slopes(u: f64) -> (f64, f64) {
-    let inverse = 1.0 / (1.0 - u * u);
-    (2.0 * u * inverse, 2.0 * (1.0 + u * u) * inverse * inverse)
-}
-
-/// The largest multiple of `d` that may be added to `x` within the bounds.
-fn reach(bearing: &Bearing, share: f64, x: &Exerted, d: &Exerted) -> f64 {
-    let sigma2 = (share * bearing.mu).powi(2);
-    let form =
-        |a: &Exerted, b: &Exerted| sigma2 * a[0] * b[0] - a.fixed_rows::<3>(1).dot(&b.fixed_rows::<3>(1));
-    let (q, slope, curve) = (form(x, x), 2.0 * form(x, d), form(d, d));
-    // The smallest positive root of q + t q' + t² c, for q > 0.
-    let root = (slope * slope - 4.0 * curve * q).max(0.0).sqrt();
-    let mut reach = if root > slope { 2.0 * q / (root - slope) } else { f64::INFINITY };
-    for row in bearing.rows() {
-        let (u, du) = (row.dot(x), row.dot(d));
-        if du != 0.0 {
-            reach = reach.min((du.signum() - u) / du);
-        }
-    }
-    if d[0] > 0.0 {
-        reach = reach.min((bearing.most - x[0]) / d[0]);
-    }
-    reach
 }
