@@ -88,7 +88,7 @@ impl Kind {
                 "\"regrasp-atlas-part\"",
                 "hand,shape,size_mm,friction,mass_kg,",
             ],
-            Kind::Suite => &["\"regrasp-suite\"", "<!-- regrasp-suite -->"],
+            Kind::Suite => &["\"regrasp-suite\"", "\"regrasp-suite-part\"", "<!-- regrasp-suite -->"],
             Kind::Replay => &["\"regrasp-replay\""],
             Kind::Hand => &[HAND_MARK],
             Kind::Scenario => &[SCENARIO_MARK],

@@ -13,7 +13,8 @@ and verified in our model, and what arrives when the plans are replayed in rapie
 of goals, each is planned from where the one before has ended. The problems are always the same; times are \
 of this machine, and with more threads than idle cores they grow.\n\n\
 A folder with a file `protocol.toml` is a protocol, too. The folder of the output gets `summary.md` and \
-`results.json`, with `--keep-plans` also `plans/`.\n\n\
+`results.json`, with `--keep-plans` also `plans/`. After a crash, Ctrl-C or `--time-limit` the same \
+command goes on from where it was.\n\n\
 Examples:\n  regrasp suite\n  regrasp suite sahbani-2007 -o sahbani\n  \
 regrasp suite drop --threads 2 --keep-plans -o drop\n  regrasp suite paper --no-replay -o paper")]
 pub struct SuiteArgs {

@@ -13,34 +13,45 @@ pub struct Files {
     results: PathBuf,
     summary: PathBuf,
     plans: PathBuf,
+    part: PathBuf,
     overwrite: OverwriteArgs,
 }
 
 impl Files {
     /// Makes the folder; refuses what would destroy something.
     pub fn new(folder: &Path, args: &SuiteArgs) -> Result<Self, Failure> {
-        let [results, summary, plans] = ["results.json", "summary.md", "plans"].map(|name| folder.join(name));
+        let [results, summary, plans, part] =
+            ["results.json", "summary.md", "plans", "results.part"].map(|name| folder.join(name));
         let made = |folder: &Path| {
             fs::create_dir_all(folder)
                 .map_err(|error| Failure::bad_input(format!("`{}`: {error}", folder.display())))
         };
         made(folder)?;
-        outputs::check(&[], &[(&results, Kind::Suite), (&summary, Kind::Suite)], args.overwrite)?;
+        let wished = [&results, &summary, &part].map(|path| (path.as_path(), Kind::Suite));
+        outputs::check(&[], &wished, args.overwrite)?;
         if args.keep_plans {
             made(&plans)?;
         }
-        Ok(Self { results, summary, plans, overwrite: args.overwrite })
+        Ok(Self { results, summary, plans, part, overwrite: args.overwrite })
     }
 
     pub fn summary(&self) -> &Path {
         &self.summary
     }
 
+    /// What was found so far.
+    pub fn part(&self) -> &Path {
+        &self.part
+    }
+
+    /// Writes the results; what was found on the way there is in them.
     pub fn write(&self, json: &str, markdown: &str) -> Result<(), Failure> {
         let marked = format!("<!-- regrasp-suite -->\n{markdown}");
         for (path, content) in [(&self.results, json), (&self.summary, marked.as_str())] {
             write_file(path, |out| out.write_all(content.as_bytes())).map_err(Failure::refused)?;
         }
+        // Where it cannot be deleted it is in nobody's way.
+        drop(fs::remove_file(&self.part));
         Ok(())
     }
 

@@ -17,8 +17,9 @@ pub fn judge(args: &SuiteArgs) -> Option<Judge<'static>> {
 
 /// As `regrasp replay` does by default.
 #[cfg(feature = "rapier")]
-fn replayed(plan: &regrasp::plan::Plan) -> Result<regrasp::suite::Replayed, String> {
-    let report = crate::replay::by_default(plan).map_err(|failure| failure.message().to_owned())?;
+fn replayed(plan: &regrasp::plan::Plan) -> Result<regrasp::suite::Replayed, regrasp::suite::Unreplayable> {
+    let why = |failure: crate::Failure| regrasp::suite::Unreplayable(failure.message().to_owned());
+    let report = crate::replay::by_default(plan).map_err(why)?;
     let last = report.stages.last();
     Ok(regrasp::suite::Replayed {
         arrived: report.arrived,

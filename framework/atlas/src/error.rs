@@ -2,10 +2,9 @@
 
 use regrasp_api::{Refusal, Refuse};
 use regrasp_grasps::GraspsError;
-use regrasp_plan::WriteError;
+use regrasp_plan::{JournalError, WriteError};
 use regrasp_run::RunError;
 use regrasp_run::scenario::ScenarioError;
-use std::path::PathBuf;
 use thiserror::Error;
 
 /// Why an atlas cannot be made; that a hand cannot hold an object is no error.
@@ -45,34 +44,9 @@ pub enum AtlasError {
     /// Start grasps.
     #[error(transparent)]
     Grasps(#[from] GraspsError),
-    /// Reading or writing.
-    #[error("`{}`: {cause}", path.display())]
-    File {
-        /// Which file.
-        path: PathBuf,
-        /// What the system says.
-        cause: std::io::Error,
-    },
-    /// What was kept of another atlas.
-    #[error(
-        "`{}` is the begun atlas of another command or of other hands; name another folder, or give \
-         `--force`",
-        path.display()
-    )]
-    OtherAtlas {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A line that is no cell of this atlas.
-    #[error("`{}`, line {line}: {reason}; delete the line, and its member is done again", path.display())]
-    Journal {
-        /// The file.
-        path: PathBuf,
-        /// The line, from 1.
-        line: usize,
-        /// What is wrong with it.
-        reason: String,
-    },
+    /// What was found so far.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// Writing.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -89,11 +63,7 @@ impl Refuse for AtlasError {
             }
             Self::Run(error) => error.refusal(),
             Self::Grasps(error) => error.refusal(),
-            Self::File { .. } => Refusal::new("file", self),
-            Self::OtherAtlas { .. } => {
-                Refusal::new("file", self).remedy("name another folder, or give `--force`")
-            }
-            Self::Journal { line, .. } => Refusal::new("file", self).line(Some(*line)),
+            Self::Journal(error) => error.refusal(),
             Self::Write(error) => error.refusal(),
         }
     }

@@ -1,13 +1,12 @@
 //! The work: start grasps, goals, plans.
 
-use crate::start::start_at;
 use crate::starts::Starts;
 use crate::{AtlasError, AtlasHand, Attempt, Cell, Found, Member, Wish};
 use regrasp_api::{Configuration, GoalDescription, Pose, PoseDescription, Problem, Random, Refuse, Vec3};
 use regrasp_host::Registry;
 use regrasp_planner::{Clock, Silent, Status, Stuck};
 use regrasp_run::scenario::{Scenario, from_text};
-use regrasp_run::{Run, RunOptions, Setup, Stop};
+use regrasp_run::{Run, RunOptions, Setup, Stop, start_at};
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -7,6 +7,7 @@ use regrasp_contact_models as _;
 use regrasp_graph_strategies as _;
 use regrasp_host::Registry;
 use regrasp_local_planners as _;
+use regrasp_plan::JournalError;
 use regrasp_planner::Clock;
 use regrasp_run::NeverStops;
 use regrasp_samplers as _;
@@ -91,7 +92,7 @@ fn the_journal_of_another_atlas_is_refused_and_kept() {
     drop(Journal::open(&path, &wish(), &hands(), false).unwrap());
     let other = Wish { seed: 1, ..wish() };
     let Err(error) = Journal::open(&path, &other, &hands(), false) else { panic!("another seed") };
-    assert!(matches!(error, AtlasError::OtherAtlas { .. }), "{error}");
+    assert!(matches!(error, AtlasError::Journal(JournalError::Other { .. })), "{error}");
     assert!(Journal::open(&path, &other, &hands(), true).unwrap().cells().is_empty());
 }
 

@@ -9,6 +9,7 @@ mod convert;
 mod error;
 mod file;
 mod format;
+mod journal;
 mod json;
 mod motion;
 #[cfg(target_os = "linux")]
@@ -24,6 +25,7 @@ pub use convert::*;
 pub use error::*;
 pub use file::*;
 pub use format::*;
+pub use journal::*;
 pub use json::*;
 pub use motion::*;
 pub use statistics::*;

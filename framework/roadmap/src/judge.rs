@@ -1,9 +1,9 @@
 //! How good a roadmap is: how many random problems it solves, how fast, and with how many regrasps.
 
-use regrasp_api::{Configuration, FingerGrasp, GoalDescription, PoseDescription, Problem, StartDescription};
+use regrasp_api::{GoalDescription, PoseDescription, Problem};
 use regrasp_planner::roadmap::{Pair, Roadmap, RoadmapGraph, Through};
 use regrasp_planner::{Request, Status, solve_through};
-use regrasp_run::{Run, RunError, RunOptions, Setup};
+use regrasp_run::{Run, RunError, RunOptions, Setup, start_at};
 
 /// What became of one pair of start and goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,16 +59,6 @@ fn attempt(run: &Run) -> Attempt {
 
 /// The problem with another start, its grasp given, and another goal, which any grasp may reach.
 fn between(problem: &Problem, pair: &Pair) -> Problem {
-    let pose = |q: &Configuration| PoseDescription::from(&q.X_HO);
-    let start = StartDescription { pose: pose(&pair.from), grasp: Some(grasp(&pair.from)) };
-    let goal = vec![GoalDescription { pose: pose(&pair.to), grasp: None }];
-    Problem { start, goal, ..problem.clone() }
-}
-
-fn grasp(q: &Configuration) -> Vec<FingerGrasp> {
-    let finger = |(finger, joints): (_, &regrasp_api::FingerJoints)| FingerGrasp {
-        contact: q.contacts[finger].map(|contact| contact.p_OC.into()),
-        joints: Some(joints.to_vec()),
-    };
-    q.joints.iter().map(finger).collect()
+    let goal = vec![GoalDescription { pose: PoseDescription::from(&pair.to.X_HO), grasp: None }];
+    Problem { start: start_at(&pair.from), goal, ..problem.clone() }
 }

@@ -11,6 +11,7 @@ mod improve;
 mod plan_file;
 pub mod scenario;
 mod setup;
+mod start;
 mod task;
 mod workbench;
 
@@ -18,4 +19,5 @@ pub use audit::*;
 pub use error::*;
 pub use improve::*;
 pub use setup::*;
+pub use start::start_at;
 pub use workbench::Workbench;

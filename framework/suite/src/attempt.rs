@@ -1,9 +1,9 @@
 //! What came of one trial.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a replay of a plan says.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Replayed {
     /// Whether the object arrives.
     pub arrived: bool,
@@ -13,8 +13,13 @@ pub struct Replayed {
     pub angle: f64,
 }
 
+/// Why a plan cannot be replayed, in a sentence.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Unreplayable(pub String);
+
 /// One plan.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Attempt {
     /// Whether there is a plan to the goal and the verifier accepts it.
     pub solved: bool,
@@ -26,10 +31,13 @@ pub struct Attempt {
     pub regrasps: usize,
     /// What the replay says; absent where there is no plan, or nobody replays.
     pub replayed: Option<Replayed>,
+    /// Why nobody can replay the plan; absent where somebody does, or was not asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unreplayable: Option<Unreplayable>,
 }
 
 /// A trial: one plan, or in a chain one after the other until there is none.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
     /// The number of the series.
     pub series: usize,

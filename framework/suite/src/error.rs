@@ -2,14 +2,14 @@
 
 use regrasp_api::{Refusal, Refuse, did_you_mean, near};
 use regrasp_host::HostError;
-use regrasp_plan::StateError;
+use regrasp_plan::{JournalError, StateError};
 use regrasp_run::RunError;
 use regrasp_run::scenario::ScenarioError;
 use std::sync::Arc;
 use thiserror::Error;
 
 /// Why a protocol cannot be run; that a problem is not solved is no error.
-#[derive(Clone, Debug, Error)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SuiteError {
     /// No such protocol.
@@ -37,14 +37,9 @@ pub enum SuiteError {
     /// A plan whose end cannot be read.
     #[error(transparent)]
     Plan(#[from] StateError),
-    /// A replay that cannot be made.
-    #[error("a plan of `{series}` cannot be replayed: {reason}")]
-    Replay {
-        /// The series.
-        series: String,
-        /// Why.
-        reason: String,
-    },
+    /// What was found so far.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
 }
 
 fn hint(name: &str, known: &[&str]) -> String {
@@ -63,7 +58,8 @@ impl Refuse for SuiteError {
             Self::Scenario(error) => error.refusal(),
             Self::Preset { error, .. } => error.refusal().told(self),
             Self::Run(error) => error.refusal(),
-            Self::Plan(_) | Self::Replay { .. } => Refusal::new("replay", self),
+            Self::Journal(error) => error.refusal(),
+            Self::Plan(_) => Refusal::new("replay", self),
         }
     }
 }

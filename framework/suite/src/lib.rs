@@ -8,6 +8,7 @@
 mod attempt;
 mod error;
 mod group;
+mod journal;
 mod library;
 mod outcome;
 mod problem;
@@ -15,11 +16,12 @@ mod protocol;
 mod run;
 mod summary;
 
-pub use attempt::{Attempt, Replayed, Trial};
+pub use attempt::{Attempt, Replayed, Trial, Unreplayable};
 pub use error::SuiteError;
+pub use journal::journal;
 pub use library::{BuiltIn, Files, PROTOCOLS, load};
 pub use outcome::{Outcome, Spread};
 pub use problem::{Problem, Turn, problems};
 pub use protocol::{Problems, Protocol, Published, Series, World};
-pub use run::{Judge, Options, Told, run};
+pub use run::{Judge, Options, Told, run, scenarios};
 pub use summary::{json, markdown, rows};

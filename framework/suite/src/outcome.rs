@@ -1,6 +1,6 @@
 //! What came of a series.
 
-use crate::{Attempt, Problems, Series, Trial};
+use crate::{Attempt, Problems, Series, Trial, Unreplayable};
 use regrasp_study::compare::statistics::{Estimate, median, quantile, sorted, wilson};
 use serde::Serialize;
 
@@ -47,6 +47,8 @@ pub struct Outcome {
     pub arrived: Option<usize>,
     /// Their share with its interval.
     pub arrived_share: Option<Estimate>,
+    /// Why plans cannot be replayed, the first reason; absent where all can, or nobody replays.
+    pub unreplayable: Option<Unreplayable>,
     /// Time for planning alone (s): median, 90 % quantile and longest, of all plans, solved or not.
     pub planning_s: Option<[f64; 3]>,
     /// Generated nodes, median.
@@ -93,6 +95,7 @@ impl Outcome {
             solved,
             share: wilson(solved, attempts.len()),
             arrived,
+            unreplayable: attempts.iter().find_map(|attempt| attempt.unreplayable.clone()),
             arrived_share: arrived.and_then(|arrived| wilson(arrived, attempts.len())),
             planning_s: quantile(&times, 0.5)
                 .and_then(|median| Some([median, quantile(&times, 0.9)?, quantile(&times, 1.0)?])),
@@ -153,7 +156,7 @@ pub(crate) mod tests {
 
     pub fn attempt(solved: bool, arrived: Option<bool>) -> Attempt {
         let replayed = arrived.map(|arrived| Replayed { arrived, distance: 1e-3, angle: 0.02 });
-        Attempt { solved, planning_s: 0.01, generated: 3, regrasps: 4, replayed }
+        Attempt { solved, planning_s: 0.01, generated: 3, regrasps: 4, replayed, unreplayable: None }
     }
 
     #[test]
@@ -169,6 +172,16 @@ pub(crate) mod tests {
         assert_eq!(outcome.revolutions.map(|spread| spread.mean), Some(0.5));
         assert_eq!(outcome.whole.map(|share| share.value), Some(0.5));
         assert_eq!((outcome.plans, outcome.solved, outcome.arrived), (5, 4, Some(3)));
+    }
+
+    #[test]
+    fn what_cannot_be_replayed_says_why() {
+        let series = series(Problems::Scenario { seeds: 1 });
+        let why = Unreplayable("points stay where they are set down".into());
+        let attempt = Attempt { unreplayable: Some(why.clone()), ..attempt(true, None) };
+        let trial = Trial { attempts: vec![attempt], ..Trial::default() };
+        let outcome = Outcome::of(&series, &[&trial]);
+        assert_eq!((outcome.solved, outcome.arrived, outcome.unreplayable), (1, None, Some(why)));
     }
 
     #[test]

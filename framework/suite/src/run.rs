@@ -1,25 +1,25 @@
 //! Planning, verifying and replaying the problems of a protocol.
 
 use crate::library::Files;
-use crate::{Attempt, Problem, Protocol, Replayed, Series, SuiteError, Trial, Turn, problems};
+use crate::{Attempt, Problem, Protocol, Replayed, Series, SuiteError, Trial, Turn, Unreplayable, problems};
 use regrasp_api::{
     GoalDescription, Pose, PoseDescription, Problem as Task, Rotation, StartDescription, Vec3,
 };
-use regrasp_atlas::start_at;
 use regrasp_host::Registry;
 use regrasp_plan::{Plan, configuration};
 use regrasp_planner::{Clock, Silent, Status};
 use regrasp_run::scenario::Scenario;
-use regrasp_run::{RunOptions, Setup, Stop};
+use regrasp_run::{RunOptions, Setup, Stop, start_at};
+use std::ops::ControlFlow;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 
 /// Replays a plan; why it cannot be replayed where it cannot.
-pub type Judge<'a> = &'a (dyn Fn(&Plan) -> Result<Replayed, String> + Sync);
+pub type Judge<'a> = &'a (dyn Fn(&Plan) -> Result<Replayed, Unreplayable> + Sync);
 
-/// Told of every trial that has ended, with its plans.
-pub type Told<'a> = &'a (dyn Fn(&Trial, &[Plan]) + Sync);
+/// Told of every trial that has ended, with its plans; may end the run.
+pub type Told<'a> = &'a (dyn Fn(&Trial, &[Plan]) -> ControlFlow<()> + Sync);
 
 /// What a run needs beside the protocol.
 #[derive(Clone, Copy)]
@@ -36,15 +36,40 @@ pub struct Options<'a> {
     pub told: Told<'a>,
 }
 
-/// Runs every trial of a protocol, in the order of its series; the trials so far where it was stopped.
+/// Runs every trial of a protocol but those that are `known`, in the order of its series; all trials, or
+/// those so far where it was stopped.
+///
+/// `scenarios` are those of [`scenarios`].
 pub fn run(
+    protocol: &Protocol,
+    scenarios: &[Scenario],
+    registry: &Registry,
+    known: Vec<Trial>,
+    options: &Options<'_>,
+) -> Result<Vec<Trial>, SuiteError> {
+    let (mut trials, ended) = (known, AtomicBool::new(false));
+    for (number, (series, scenario)) in protocol.series.iter().zip(scenarios).enumerate() {
+        let job = Job { number, scenario, registry, options, ended: &ended };
+        let is_known = |k: usize| trials.iter().any(|t| (t.series, t.problem) == (number, k));
+        let all = problems(series).into_iter().enumerate();
+        let open: Vec<(usize, Problem)> = all.filter(|(k, _)| !is_known(*k)).collect();
+        trials.extend(job.trials(&open)?);
+        if ended.load(Ordering::Relaxed) || options.stop.interrupted() {
+            break;
+        }
+    }
+    trials.sort_by_key(|trial| (trial.series, trial.problem));
+    trials.dedup_by_key(|trial| (trial.series, trial.problem));
+    Ok(trials)
+}
+
+/// The scenario of each series, with its preset and its budget.
+pub fn scenarios(
     protocol: &Protocol,
     files: &Files,
     registry: &Registry,
-    options: &Options<'_>,
-) -> Result<Vec<Trial>, SuiteError> {
-    let mut trials = Vec::new();
-    for (number, series) in protocol.series.iter().enumerate() {
+) -> Result<Vec<Scenario>, SuiteError> {
+    let scenario = |series: &Series| {
         let mut scenario = files.scenario(&series.scenario, registry)?;
         if let Some(name) = &series.preset {
             let preset = regrasp_host::preset(name)
@@ -54,33 +79,35 @@ pub fn run(
         if let Some(most) = series.max_nodes {
             scenario.problem.limits.budget.max_nodes = most;
         }
-        let job = Job { series, number, scenario: &scenario, registry, options };
-        trials.extend(job.trials(&problems(series))?);
-        if options.stop.interrupted() {
-            break;
-        }
-    }
-    Ok(trials)
+        Ok(scenario)
+    };
+    protocol.series.iter().map(scenario).collect()
 }
 
 /// A series at work.
 struct Job<'a> {
-    series: &'a Series,
     number: usize,
     scenario: &'a Scenario,
     registry: &'a Registry,
     options: &'a Options<'a>,
+    /// Whether who is told of trials wants no more.
+    ended: &'a AtomicBool,
 }
 
 impl Job<'_> {
     /// Its trials, on threads, in their order.
-    fn trials(&self, problems: &[Problem]) -> Result<Vec<Trial>, SuiteError> {
+    fn trials(&self, problems: &[(usize, Problem)]) -> Result<Vec<Trial>, SuiteError> {
         let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
         let work = || -> Result<(), SuiteError> {
             let setup = Setup::new(self.scenario, &self.scenario.choices, self.registry)?;
-            while let Some((k, problem)) = at(problems, next.fetch_add(1, Ordering::Relaxed)) {
-                let Some((trial, plans)) = self.trial(&setup, k, problem)? else { return Ok(()) };
-                (self.options.told)(&trial, &plans);
+            while let Some((k, problem)) = problems.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if self.ended.load(Ordering::Relaxed) {
+                    return Ok(());
+                }
+                let Some((trial, plans)) = self.trial(&setup, *k, problem)? else { return Ok(()) };
+                if (self.options.told)(&trial, &plans).is_break() {
+                    self.ended.store(true, Ordering::Relaxed);
+                }
                 if let Ok(mut done) = done.lock() {
                     done.push(trial);
                 }
@@ -95,9 +122,7 @@ impl Job<'_> {
             running.into_iter().map(join).collect::<Result<Vec<()>, _>>()
         });
         ended?;
-        let mut trials = done.into_inner().unwrap_or_default();
-        trials.sort_by_key(|trial| trial.problem);
-        Ok(trials)
+        Ok(done.into_inner().unwrap_or_default())
     }
 
     /// One trial; `None` where it was stopped.
@@ -159,18 +184,17 @@ impl Job<'_> {
             generated: statistics.generated_nodes,
             regrasps: if solved { statistics.regrasps } else { 0 },
             replayed: None,
+            unreplayable: None,
         };
         let plan = run.plan.filter(|_| solved);
         if let (Some(judge), Some(plan)) = (self.options.judge, &plan) {
-            let failed = |reason| SuiteError::Replay { series: self.series.name.clone(), reason };
-            attempt.replayed = Some(judge(plan).map_err(failed)?);
+            match judge(plan) {
+                Ok(replayed) => attempt.replayed = Some(replayed),
+                Err(why) => attempt.unreplayable = Some(why),
+            }
         }
         Ok(Some((attempt, plan)))
     }
-}
-
-fn at(problems: &[Problem], k: usize) -> Option<(usize, &Problem)> {
-    problems.get(k).map(|problem| (k, problem))
 }
 
 /// The problem of a turn from the scenario's start, begun in another start.

@@ -50,14 +50,17 @@ fn in_model(outcome: &Outcome) -> String {
         parts.push(format!("{} ms median, {} 90 %, {} slowest", ms(median), ms(most), ms(slowest)));
     }
     if let Some(regrasps) = outcome.regrasps {
-        parts.push(format!("{regrasps} regrasps"));
+        parts.push(format!("{regrasps} regrasp{}", if regrasps == 1.0 { "" } else { "s" }));
     }
     parts.join("; ")
 }
 
 /// What arrived in the replays.
 fn in_simulation(outcome: &Outcome) -> String {
-    let Some(arrived) = outcome.arrived else { return "not replayed".into() };
+    let why = outcome.unreplayable.as_ref().map(|why| why.0.as_str());
+    let Some(arrived) = outcome.arrived else {
+        return why.map_or("not replayed".into(), |why| format!("cannot be replayed: {why}"));
+    };
     let mut parts = Vec::new();
     match (outcome.arrived_chain, outcome.arrived_share) {
         (Some(chain), _) => {
@@ -77,6 +80,7 @@ fn in_simulation(outcome: &Outcome) -> String {
             most.to_degrees()
         ));
     }
+    parts.extend(why.map(|why| format!("some cannot be replayed: {why}")));
     parts.join("; ")
 }
 

@@ -10,9 +10,11 @@ use regrasp_run::NeverStops;
 use regrasp_samplers as _;
 use regrasp_stability_tests as _;
 use regrasp_suite::{
-    Files, Options, Outcome, Problems, Protocol, Published, Replayed, Series, Trial, World, run,
+    Files, Options, Outcome, Problems, Protocol, Published, Replayed, Series, Told, Trial, World, journal,
+    run, scenarios,
 };
 use regrasp_surfaces as _;
+use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 /// Time stands still.
@@ -51,16 +53,27 @@ fn protocol() -> Protocol {
     }
 }
 
-fn trials(threads: usize, told: &(dyn Fn(&Trial, &[Plan]) + Sync)) -> Vec<Trial> {
+fn trials(threads: usize, told: Told<'_>) -> Vec<Trial> {
+    go_on(Vec::new(), threads, told)
+}
+
+fn go_on(known: Vec<Trial>, threads: usize, told: Told<'_>) -> Vec<Trial> {
     let arrives = |_: &Plan| Ok(Replayed { arrived: true, distance: 0.0, angle: 0.0 });
     let options = Options { threads, stop: &NeverStops, clock: &Still, judge: Some(&arrives), told };
-    run(&protocol(), &Files::BuiltIn(&[]), &Registry::linked().unwrap(), &options).unwrap()
+    let registry = Registry::linked().unwrap();
+    let scenarios = scenarios(&protocol(), &Files::BuiltIn(&[]), &registry).unwrap();
+    run(&protocol(), &scenarios, &registry, known, &options).unwrap()
+}
+
+/// Takes notice, and wants more.
+fn more(_: &Trial, _: &[Plan]) -> ControlFlow<()> {
+    ControlFlow::Continue(())
 }
 
 #[test]
 fn trials_are_the_same_on_two_threads_and_counted() {
-    let one = trials(1, &|_, _| {});
-    assert_eq!(one, trials(2, &|_, _| {}));
+    let one = trials(1, &more);
+    assert_eq!(one, trials(2, &more));
     assert_eq!(one.len(), 4);
     let outcome = Outcome::of(&protocol().series[0], &[&one[0]]);
     assert_eq!(outcome.chain.map(|chain| chain.mean), Some(3.0), "{one:?}");
@@ -75,6 +88,7 @@ fn each_goal_of_a_chain_begins_where_the_one_before_ended() {
         if trial.series == 0 {
             chains.lock().unwrap().push(plans.to_vec());
         }
+        ControlFlow::Continue(())
     });
     let plans = chains.into_inner().unwrap().remove(0);
     assert_eq!(plans.len(), 3);
@@ -89,4 +103,30 @@ fn each_goal_of_a_chain_begins_where_the_one_before_ended() {
             assert!((a - b).abs() < 0.05, "{a} {b}");
         }
     }
+}
+
+#[test]
+fn a_run_that_was_ended_goes_on_from_its_journal() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("results.part");
+    let registry = Registry::linked().unwrap();
+    let of = scenarios(&protocol(), &Files::BuiltIn(&[]), &registry).unwrap();
+    let open = |way: &str| journal(&path, &protocol(), &of, way, false);
+    let kept = Mutex::new(open("replayed").unwrap().0);
+    let two = trials(1, &|trial, _| {
+        kept.lock().unwrap().append(trial).unwrap();
+        if trial.series == 1 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert_eq!(two.len(), 2);
+    drop(kept);
+    assert!(open("not replayed").is_err(), "other work");
+    let (_, known) = open("replayed").unwrap();
+    assert_eq!(known, two);
+    let made = Mutex::new(0);
+    let all = go_on(known, 1, &|_, _| {
+        *made.lock().unwrap() += 1;
+        ControlFlow::Continue(())
+    });
+    assert_eq!((all.len(), made.into_inner().unwrap()), (4, 2));
+    assert_eq!(all, trials(1, &more));
 }
