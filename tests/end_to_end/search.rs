@@ -93,3 +93,42 @@ fn searches_that_are_begun_anew_are_determined_by_the_seed() {
     }
     assert!(restarts > 0, "rounds of two samples are too short for this problem");
 }
+
+#[test]
+fn a_fingertip_that_leans_over_an_edge_is_given_as_a_plan_has_it() {
+    let desk = Desk::new();
+    let cube = built_in("cube-free", &[]);
+    let goal = cube.find("[[goal]]").expect("a goal");
+    // At half the cube's edge, and there over it by the fingertip's radius, halfway between both faces.
+    let (edge, over) = (0.0225, 0.0225 + 0.01 * 0.5_f64.sqrt());
+    let grasp = format!(
+        "grasp = [\n  {{ contact = [{edge}, 0.0, {edge}], joints = [{over}, 0.0, {over}] }},\n  \
+         {{ contact = [0.0, {edge}, 0.0], joints = [0.0325, 0.0, 0.0] }},\n  \
+         {{ contact = [-{edge}, 0.0, -{edge}], joints = [{over}, 0.0, -{over}] }},\n  \
+         {{ contact = [0.0, -{edge}, 0.0], joints = [0.0325, 0.0, 0.0] }},\n]\n\n"
+    );
+    let (before, after) = cube.split_at(goal);
+    desk.write("leaning.toml", format!("{}\n{grasp}{after}", before.trim_end()));
+    let said = desk.run("plan leaning.toml -o plan.json");
+    assert_eq!(said.code, 0, "{}", said.err);
+    let plan: Value = serde_json::from_str(&desk.read("plan.json")).expect("a plan file is JSON");
+    let contact = &plan["segments"][0]["states"][0]["contacts"][0];
+    for axis in [0, 2] {
+        let normal = contact["normal_O"][axis].as_f64().expect("a number");
+        assert!((normal - 0.5_f64.sqrt()).abs() < 1e-6, "{contact}");
+    }
+}
+
+#[test]
+fn a_search_that_fails_for_want_of_friction_says_how_much_would_do() {
+    let desk = Desk::new();
+    desk.write("ice.toml", built_in("sphere", &[("friction = 0.8", "friction = 0.1")]));
+    let said = desk.run("plan ice.toml --max-nodes 4");
+    said.assert_fails(
+        3,
+        &["nearly all grasps are not stable", "there is a plan, 0.1 is given", "`object.friction`"],
+    );
+    // Where the budget alone is short, friction is not to blame.
+    let said = desk.run("plan ellip-obst --seed 1 --max-nodes 1");
+    assert!(said.code == 0 || !said.err.contains("friction"), "{}", said.err);
+}

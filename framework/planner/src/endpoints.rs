@@ -14,6 +14,10 @@ use regrasp_api::{
 const CONTACT_TOLERANCE: f64 = 1e-3;
 /// How far the fingertip of given joints may lie from its contact (m).
 const JOINT_TOLERANCE: f64 = 1e-3;
+/// Points this near each other (m) are one: what a plan file's numbers and its fingertips' closure leave.
+const SAME_POINT: f64 = 1e-5;
+/// Normals this near each other are one.
+const SAME_NORMAL: f64 = 1e-6;
 /// How many calls of the sampler look for a grasp at a given pose before the search gives up.
 const GRASP_CALLS: u64 = 40;
 
@@ -69,7 +73,10 @@ fn place(
         }
     }
     let Some(point) = entry.contact else { return Ok(()) };
-    let contact = on_surface(task, point.into())?;
+    let mut contact = on_surface(task, point.into())?;
+    if entry.joints.is_some() {
+        contact = leaning(task, q, finger, contact);
+    }
     q.contacts[finger] = Some(contact);
     let radius = task.hand.fingertip_radius();
     let p_HF = q.contact_tip_center(finger, radius).expect("the contact was just set");
@@ -97,6 +104,18 @@ fn on_surface(task: &Task<'_>, p_OC: regrasp_api::Vec3) -> Result<Contact, Strin
     // on.
     let lifted = projection.contact.p_OC + projection.contact.n_O * task.hand.fingertip_radius();
     Ok(task.surface.project(&lifted, Some(projection.contact.facet)).contact)
+}
+
+/// The contact as the fingertip of the given joints has it, where that touches at this very point: on an edge a
+/// point alone does not say which way the fingertip leans.
+fn leaning(task: &Task<'_>, q: &Configuration, finger: FingerIndex, contact: Contact) -> Contact {
+    let p_HF = task.hand.tip_center(finger, &q.joints[finger]);
+    let p_OF = q.X_HO.inverse_transform_point(&p_HF.into()).coords;
+    let touched = task.surface.project(&p_OF, Some(contact.facet));
+    let is_here = (touched.contact.p_OC - contact.p_OC).norm() <= SAME_POINT
+        && (touched.distance - task.hand.fingertip_radius()).abs() <= JOINT_TOLERANCE;
+    let leans = (touched.contact.n_O - contact.n_O).norm() > SAME_NORMAL;
+    if is_here && leans { touched.contact } else { contact }
 }
 
 /// Whether the grasp is stable with the object's own friction (no planner's margin).
