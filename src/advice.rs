@@ -2,7 +2,7 @@
 
 use crate::api::{Reason, Slot};
 use crate::plan::{Statistics, StoppedBy};
-use crate::planner::Stuck;
+use crate::planner::{Status, Stuck};
 use crate::run::Run;
 use crate::run::scenario::Scenario;
 
@@ -45,26 +45,47 @@ const NODES_OF_A_TRY: usize = 64;
 /// The time (s) that each of them may take.
 const TIME_OF_A_TRY: f64 = 2.0;
 
-/// Where a run found no grasp at start or goal that is stable enough: the least of some coefficients of
-/// friction at which grasps are found there, the rest of the problem being as it is; `None` where stability
-/// is not what most grasps lack, or no friction helps.
+/// What more friction would bring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Needed {
+    /// At this coefficient grasps are found at start and goal.
+    ForGrasps(f64),
+    /// At this coefficient there is a plan.
+    ForPlan(f64),
+}
+
+/// Where a run found no grasp at start or goal, or no way between them, and most of what it rejected was not
+/// stable: the least of some coefficients of friction that would do, the rest of the problem being as it is;
+/// `None` where stability is not what most grasps lack, or no friction helps.
 ///
 /// It tries them, in a second or two each at most.
-pub fn needed_friction(scenario: &Scenario, run: &Run) -> Option<f64> {
+pub fn needed_friction(scenario: &Scenario, run: &Run) -> Option<Needed> {
     let lacks_grasps = |run: &Run| matches!(run.outcome.stuck, Some(Stuck::StartGrasp | Stuck::GoalGrasp(_)));
     let cause = most_frequent(&run.outcome.statistics);
-    if !lacks_grasps(run) || !matches!(cause, Some(Reason::Stability | Reason::Liftable)) {
+    if !matches!(cause, Some(Reason::Stability | Reason::Liftable)) {
         return None;
     }
     let mut other = scenario.clone();
     let budget = &mut other.problem.limits.budget;
     budget.max_nodes = budget.max_nodes.min(NODES_OF_A_TRY);
     budget.time_limit = Some(TIME_OF_A_TRY);
-    let given = scenario.problem.object.friction;
-    FRICTIONS.into_iter().filter(|friction| *friction > given).find(|&friction| {
+    let mut tried = |friction: f64| {
         (other.problem.object.friction, other.object.friction) = (friction, friction);
-        crate::solve(&other, 0).is_ok_and(|run| !lacks_grasps(&run))
-    })
+        crate::solve(&other, 0).ok()
+    };
+    let given = scenario.problem.object.friction;
+    let mut greater = FRICTIONS.into_iter().filter(|friction| *friction > given);
+    if lacks_grasps(run) {
+        return greater.find(|&mu| tried(mu).is_some_and(|run| !lacks_grasps(&run))).map(Needed::ForGrasps);
+    }
+    let mut is_solved = |friction: f64| {
+        tried(friction).is_some_and(|run| run.outcome.status == Status::Solved && run.is_verified())
+    };
+    // Where the most friction does not help, none does, and nothing is tried in vain.
+    if !mostly_unstable(&run.outcome.statistics) || !is_solved(FRICTIONS[FRICTIONS.len() - 1]) {
+        return None;
+    }
+    greater.find(|&friction| is_solved(friction)).map(Needed::ForPlan)
 }
 
 /// How to raise the budget that ended the run.
@@ -79,6 +100,14 @@ fn more_budget(stopped_by: Option<StoppedBy>) -> &'static str {
 fn most_frequent(statistics: &Statistics) -> Option<Reason> {
     let sampler = statistics.plugins.get(&Slot::Sampler)?;
     sampler.rejections.iter().max_by_key(|&(_, count)| count).map(|(&reason, _)| reason)
+}
+
+/// Whether nine of ten grasps that the sampler refused were not stable enough.
+fn mostly_unstable(statistics: &Statistics) -> bool {
+    let Some(sampler) = statistics.plugins.get(&Slot::Sampler) else { return false };
+    let count = |reason: Reason| sampler.rejections.get(&reason).copied().unwrap_or(0);
+    let unstable = count(Reason::Stability) + count(Reason::Liftable);
+    10 * unstable >= 9 * sampler.rejections.values().sum::<u64>()
 }
 
 /// Whether more than half of what the local planners refused collided.

@@ -37,7 +37,7 @@ mod advice;
 pub mod page;
 mod stopwatch;
 
-pub use advice::{advice, needed_friction};
+pub use advice::{Needed, advice, needed_friction};
 pub use stopwatch::Stopwatch;
 
 pub use regrasp_abi as abi;

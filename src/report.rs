@@ -5,6 +5,7 @@ use crate::quantity::{digits, span};
 use crate::table::Table;
 use crate::terminal::{Paint, paint};
 use crate::verify::check_table;
+use regrasp::Needed;
 use regrasp::api::{Reason, Slot, Tally};
 use regrasp::host::Choices;
 use regrasp::page::place_text;
@@ -218,10 +219,13 @@ impl Summary<'_> {
         let kept = self.saved.map(|path| format!("; what was reached is kept as `{}`", path.display()));
         let rejections = rejections(&outcome.statistics);
         let given = self.scenario.problem.object.friction;
+        let fix = "raise `object.friction` if the surfaces allow it";
         let advice = match regrasp::needed_friction(self.scenario, self.run) {
-            Some(needed) => format!(
-                "most grasps are not stable: grasps are found at friction {needed}, {given} is given; raise \
-                    `object.friction` if the surfaces allow it"
+            Some(Needed::ForGrasps(needed)) => format!(
+                "most grasps are not stable: grasps are found at friction {needed}, {given} is given; {fix}"
+            ),
+            Some(Needed::ForPlan(needed)) => format!(
+                "nearly all grasps are not stable: at friction {needed} there is a plan, {given} is given; {fix}"
             ),
             None => regrasp::advice(self.run),
         };
