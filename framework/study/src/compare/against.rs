@@ -57,7 +57,7 @@ impl Against {
             write!(text, "\n\n## {name}\n").expect("a text takes everything");
             for (question, answers) in questions {
                 let who = subject(&self.study, question, &|name| format!("`{}`", name.replace('`', "'")));
-                let said = line(answers, &self.family, self.study.hypotheses.band);
+                let said = line(answers, self.study.hypotheses.band);
                 write!(text, "\n- {who}: {said}.").expect("a text takes everything");
             }
         }

@@ -2,7 +2,7 @@
 
 use super::question::{Seeds, band, contrast, questions, row_horizon_s};
 use super::statistics::{ALPHA, Contrast, Estimate, holm, holm_levels};
-use super::{Cell, Measure, Question, Study};
+use super::{Cell, Figure, Measure, Question, Study};
 use std::collections::BTreeMap;
 
 /// What may be said of a difference.
@@ -64,6 +64,11 @@ pub struct Comparison {
 }
 
 impl Comparison {
+    /// How many seeds in common it needs to show anything, at its level.
+    pub fn fewest(&self) -> usize {
+        fewest_pairs(self.level)
+    }
+
     /// Whether a difference is shown.
     pub fn is_shown(&self) -> bool {
         matches!(self.verdict, Verdict::More | Verdict::Less)
@@ -92,8 +97,6 @@ pub struct Family {
     pub comparisons: Vec<Comparison>,
     /// How many of them could be refused at all, and were corrected for.
     pub tested: usize,
-    /// How many seeds in common a further comparison would need to show anything.
-    pub fewest: usize,
 }
 
 impl Family {
@@ -159,16 +162,39 @@ pub(super) fn judge(asked: Vec<Asked>) -> Family {
     let can_show = |asked: &Asked| asked.contrast.as_ref().is_some_and(|found| found.can_show(ALPHA));
     let alone: Vec<f64> =
         asked.iter().map(|asked| asked.contrast.as_ref().map_or(1.0, Contrast::p_value)).collect();
-    let (able, p): (Vec<usize>, Vec<f64>) =
-        asked.iter().enumerate().filter(|(_, asked)| can_show(asked)).map(|(k, _)| (k, alone[k])).unzip();
-    let (levels, rest) = holm_levels(&p, asked.len() - p.len(), ALPHA);
+    let able: Vec<usize> = (0..asked.len()).filter(|&k| can_show(&asked[k])).collect();
+    let weights = weights(able.iter().map(|&k| &asked[k].measure));
+    let weight = |measure: &Measure| weights[usize::from(is_foremost(measure))];
+    let tests: Vec<(f64, f64)> = able.iter().map(|&k| (alone[k], weight(&asked[k].measure))).collect();
+    let all: f64 = asked.iter().map(|asked| weight(&asked.measure)).sum();
+    let others = (all - tests.iter().map(|(_, weight)| weight).sum::<f64>()).max(0.0);
+    let (levels, unit) = holm_levels(&tests, others, ALPHA);
+    let tested = tests.len();
     let corrected: BTreeMap<usize, (f64, f64)> =
-        able.into_iter().zip(holm(&p).into_iter().zip(levels)).collect();
+        able.into_iter().zip(holm(&tests).into_iter().zip(levels)).collect();
     let comparisons = asked.into_iter().enumerate().map(|(k, asked)| {
-        let (p_holm, level) = corrected.get(&k).copied().unwrap_or((1.0, rest));
+        let rest = (1.0, unit * weight(&asked.measure));
+        let (p_holm, level) = corrected.get(&k).copied().unwrap_or(rest);
         judged(asked, alone[k], p_holm, level)
     });
-    Family { comparisons: comparisons.collect(), tested: p.len(), fewest: fewest_pairs(rest) }
+    Family { comparisons: comparisons.collect(), tested }
+}
+
+/// The share of the level that goes to what a study is made for: whether problems are solved, and how fast.
+pub const FOREMOST: f64 = 0.75;
+
+/// The weights of hypotheses in the correction: those on solved runs and planning time, which come second here,
+/// share [`FOREMOST`] of the level, and never have less than the others, so that a study of twenty seeds which
+/// asks everything still shows what it is made for.
+fn weights<'m>(tested: impl Iterator<Item = &'m Measure>) -> [f64; 2] {
+    let (mut foremost, mut others) = (0.0_f64, 0.0_f64);
+    tested.for_each(|measure| *(if is_foremost(measure) { &mut foremost } else { &mut others }) += 1.0);
+    let ratio = (FOREMOST * others) / ((1.0 - FOREMOST) * foremost).max(f64::MIN_POSITIVE);
+    [1.0, if foremost > 0.0 { ratio.max(1.0) } else { 1.0 }]
+}
+
+fn is_foremost(measure: &Measure) -> bool {
+    matches!(measure, Measure::Solved | Measure::Figure(Figure::Planning))
 }
 
 /// Fewer pairs than this cannot meet a level, whatever they show: even if all point one way, p is 2 / 2ⁿ.
@@ -200,7 +226,7 @@ fn is_within(difference: Option<Estimate>, band: Option<f64>) -> bool {
 mod tests {
     use super::*;
     use crate::compare::fixture::{factorial, runs, study};
-    use crate::compare::{Figure, Pairs, RunKey, analyse};
+    use crate::compare::{Pairs, RunKey, analyse};
 
     fn family(study: &Study, time: impl Fn(RunKey) -> Option<f64>) -> Family {
         let records = runs(study, time);

@@ -31,7 +31,7 @@ pub fn finding(
     let mut lead: Vec<String> = row.iter().filter_map(|cell| unverified(cell, name)).collect();
     let questions = family.questions(scenario);
     let told = |(question, answers): (&Question, &[Comparison])| {
-        format!("{}: {}.", subject(study, question, name), line(answers, family, study.hypotheses.band))
+        format!("{}: {}.", subject(study, question, name), line(answers, study.hypotheses.band))
     };
     let (pairs, effects): (Vec<_>, Vec<_>) =
         questions.into_iter().partition(|(question, _)| matches!(question, Question::Pair { .. }));

@@ -114,16 +114,18 @@ pub fn subject(study: &Study, question: &Question, name: &dyn Fn(&str) -> String
 
 /// All answers to one question in one line: what is shown, what is practically the same, what is not shown,
 /// what could not be.
-pub fn line(answers: &[Comparison], family: &Family, band: f64) -> String {
+pub fn line(answers: &[Comparison], band: f64) -> String {
     let mut parts: Vec<String> = answers.iter().filter_map(clause).collect();
     let nouns = |verdict: Verdict| {
         let wanted = answers.iter().filter(|found| found.verdict == verdict);
         wanted.map(|found| found.measure.noun()).collect::<Vec<_>>().join(", ")
     };
+    let too_few = answers.iter().filter(|found| found.verdict == Verdict::TooFew);
+    let needed = too_few.map(Comparison::fewest).max().unwrap_or_default();
     let heads = [
         (Verdict::Same, format!("the same within {}", percent(band))),
         (Verdict::NotShown, "no difference shown".to_owned()),
-        (Verdict::TooFew, format!("too few seeds in common, of {} needed", family.fewest)),
+        (Verdict::TooFew, format!("too few seeds in common, of {needed} needed")),
     ];
     for (verdict, head) in heads {
         let nouns = nouns(verdict);
@@ -156,7 +158,8 @@ pub fn family_text(study: &Study, family: &Family, name: &dyn Fn(&str) -> String
     };
     format!(
         "One family of hypotheses: {pairs}{effects}, in every measure, on every scenario: {all}, of which {} \
-         could be told apart by a test and are corrected together (Holm). A difference counts as shown below p = \
+         could be told apart by a test and are corrected together (Holm; three quarters of the level go to solved \
+         runs and planning time). A difference counts as shown below p = \
          0.05; as practically none within {} of the first variant's median.",
         family.tested,
         percent(study.hypotheses.band)
