@@ -29,9 +29,6 @@ const GRAIN: f64 = 1e-4;
 /// The same over a whole stretch.
 const MOST_HALVINGS: usize = 10_000;
 
-/// Where a pair was closest before anything is known.
-const NOWHERE: Gap = Gap { distance: 0.0, direction: Vec3::new(0.0, 0.0, 0.0), facet: 0 };
-
 /// The distances of all pairs.
 pub(crate) struct ClearanceCheck<'s> {
     hand: &'s Chains,
@@ -97,7 +94,7 @@ impl<'s> ClearanceCheck<'s> {
             smallest,
             motions: Motions::new(scene),
             lower: vec![f64::NEG_INFINITY; scene.pairs.len()],
-            nearest: vec![NOWHERE; scene.pairs.len()],
+            nearest: vec![Gap::somewhere(0); scene.pairs.len()],
             supports: vec![Default::default(); scene.pairs.len()],
             bounds: Vec::new(),
             spare: Frames::new(hand),
@@ -247,9 +244,22 @@ impl<'s> ClearanceCheck<'s> {
     }
 
     /// The closest pair of those compared at a state, with its exact distance (m), beside the moving
-    /// fingertip of a regrasp and the object. To the last digit it depends on the state alone.
-    pub(crate) fn closest(&mut self, leg: &Leg<'_>, frames: &Frames) -> Option<(f64, BodyPair)> {
-        self.nearest.fill(NOWHERE);
+    /// fingertip of a regrasp and the object. To the last digit it depends on the state alone, whose contacts
+    /// `touches` are.
+    pub(crate) fn closest(
+        &mut self,
+        leg: &Leg<'_>,
+        frames: &Frames,
+        touches: &[Option<Touch>; MAX_FINGERS],
+    ) -> Option<(f64, BodyPair)> {
+        for (gap, (_, b)) in self.nearest.iter_mut().zip(&self.scene.pairs) {
+            // A finger is likely to be nearest where it touches.
+            let touch = match self.scene.bodies[*b].body {
+                Body::Link(finger, _) | Body::Fingertip(finger) => touches[finger.index()],
+                _ => None,
+            };
+            *gap = Gap::somewhere(touch.filter(|_| !self.scene.has_twin()).map_or(0, |touch| touch.facet));
+        }
         let mut bounds = std::mem::take(&mut self.bounds);
         bounds.clear();
         let pairs = 0..self.scene.pairs.len();
@@ -264,8 +274,7 @@ impl<'s> ClearanceCheck<'s> {
             if bound >= least {
                 break;
             }
-            let distance = self.exact(pair, frames, true);
-            if distance < least {
+            if let Some(distance) = self.exact_below(pair, frames, true, least).filter(|d| *d < least) {
                 closest = Some((distance, pair));
             }
         }
@@ -278,6 +287,11 @@ impl<'s> ClearanceCheck<'s> {
 
     /// The exact distance of a pair (m); not positive where the bodies overlap.
     fn exact(&mut self, pair: usize, frames: &Frames, contained: bool) -> f64 {
+        self.exact_below(pair, frames, contained, f64::INFINITY).unwrap_or(f64::INFINITY)
+    }
+
+    /// The same; `None`, which costs less, where it is not below `most` (m).
+    fn exact_below(&mut self, pair: usize, frames: &Frames, contained: bool, most: f64) -> Option<f64> {
         let (a, b) = self.scene.pairs[pair];
         let (first, second) = (&self.scene.bodies[a], &self.scene.bodies[b]);
         let (X_HA, X_HB) = (self.scene.pose(a, frames), self.scene.pose(b, frames));
@@ -285,13 +299,19 @@ impl<'s> ClearanceCheck<'s> {
             (Core::Mesh(solid), Core::Segment(p, q)) => {
                 let X_AB = X_HA.inv_mul(X_HB);
                 let [p, q] = [p, q].map(|end| (X_AB * Point3::from(*end)).coords);
-                let gap = solid.gap_to_segment(&p, &q, self.nearest[pair].facet);
+                let cores = most + first.radius + second.radius;
+                let found = solid.gap_below(&p, &q, self.nearest[pair].facet, cores);
+                let gap = found.unwrap_or_else(|farther| farther);
                 self.nearest[pair] = gap;
-                if contained && solid.contains(&p) { 0.0 } else { gap.distance }
+                match found {
+                    _ if contained && solid.swallows(&p, &q, &gap) => 0.0,
+                    Ok(gap) => gap.distance,
+                    Err(_) => return None,
+                }
             }
             _ => shape::distance(&first.core, X_HA, &second.core, X_HB, contained),
         };
-        cores - first.radius - second.radius
+        Some(cores - first.radius - second.radius)
     }
 
     /// A lower bound of a pair's distance (m) from balls around both, or the box that one of them is.

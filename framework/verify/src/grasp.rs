@@ -111,7 +111,7 @@ impl GraspJudge<'_> {
         motion_checks::driven_joints(hand, legs).map_or(Ok(()), pass)?;
         self.frames.place(hand, &leg, 0, 0.0);
         let (touches, closure) = self.touches(&leg)?;
-        let clearance = self.clearance.closest(&leg, &self.frames);
+        let clearance = self.clearance.closest(&leg, &self.frames, &touches);
         let distance = clearance.map_or(f64::INFINITY, |(distance, _)| distance);
         gauge("clearance", "m", Side::Above, self.of.tolerances.clearance, distance)?;
         let forces = self.forces(&leg)?;

@@ -93,7 +93,7 @@ impl Figures<'_> {
         }
         StateFigures {
             margin: self.stability.figure(leg, &self.frames.X_HO.rotation, &touches),
-            clearance: self.clearance.closest(leg, &self.frames),
+            clearance: self.clearance.closest(leg, &self.frames, &touches),
         }
     }
 

@@ -41,6 +41,8 @@ pub(crate) struct Gap {
     /// The unit direction from the surface to the segment; zero where they meet.
     pub(crate) direction: Vec3,
     pub(crate) facet: u32,
+    /// Whether a plane is known that has the solid on one side and the segment on the other.
+    is_parted: bool,
 }
 
 impl Solid {
@@ -102,8 +104,22 @@ impl Solid {
 
     /// Where a segment comes closest to the surface; `near` as for [`Self::closest`].
     pub(crate) fn gap_to_segment(&self, p: &Vec3, q: &Vec3, near: u32) -> Gap {
-        let at_end = self.gap_at_end(p, q, near).or_else(|| self.gap_at_end(q, p, near));
-        at_end.unwrap_or_else(|| self.search_segment(p, q, near))
+        self.gap_below(p, q, near, f64::INFINITY).unwrap_or_else(|farther| farther)
+    }
+
+    /// The same where the distance is below `most` (m); else an upper bound of it, where `near` is.
+    pub(crate) fn gap_below(&self, p: &Vec3, q: &Vec3, near: u32, most: f64) -> Result<Gap, Gap> {
+        match self.gap_at_end(p, q, near).or_else(|| self.gap_at_end(q, p, near)) {
+            Some(gap) if gap.distance < most => Ok(gap),
+            Some(gap) => Err(gap),
+            None => self.search_below(p, q, near, most),
+        }
+    }
+
+    /// Whether any of a segment is inside, which does not meet the surface; `gap` is where it is near.
+    pub(crate) fn swallows(&self, p: &Vec3, q: &Vec3, gap: &Gap) -> bool {
+        let is_parted = |n: &Vec3| n.dot(p).min(n.dot(q)) > self.support(n) + ROUNDING;
+        !gap.is_parted && !is_parted(&gap.direction) && self.contains(p)
     }
 
     /// The same where it is the end `p` that comes closest, and no search is needed: all of the mesh is on
@@ -111,15 +127,25 @@ impl Solid {
     fn gap_at_end(&self, p: &Vec3, q: &Vec3, near: u32) -> Option<Gap> {
         let (point, facet) = self.outer.closest(&self.vertices, p, near)?;
         let away = p - point;
-        (away.dot(&(q - p)) >= 0.0).then(|| Gap::new(away.norm(), vector(&away), facet))
+        let gap = || Gap { is_parted: true, ..Gap::new(away.norm(), vector(&away), facet) };
+        (away.dot(&(q - p)) >= 0.0).then(gap)
     }
 
     /// The same by a search of the tree, unless `near` is seen to hold it.
+    #[cfg(test)]
     pub(crate) fn search_segment(&self, p: &Vec3, q: &Vec3, near: u32) -> Gap {
+        self.search_below(p, q, near, f64::INFINITY).unwrap_or_else(|farther| farther)
+    }
+
+    fn search_below(&self, p: &Vec3, q: &Vec3, near: u32, most: f64) -> Result<Gap, Gap> {
         let line = segment(p, q);
         let first = between(&self.triangle(near), &line);
+        let at_first = |is_parted: bool| {
+            let gap = Gap { is_parted, ..Gap::new(first.0, first.1, near) };
+            if first.0 < most { Ok(gap) } else { Err(gap) }
+        };
         if self.is_least(p, q, first) {
-            return Gap::new(first.0, first.1, near);
+            return at_first(true);
         }
         let (low, high) = (line.a.min(line.b), line.a.max(line.b));
         let bound = |node: &BvhNode, _: f64| {
@@ -131,9 +157,9 @@ impl Solid {
             ball.max(boxes)
         };
         let leaf = |facet: u32, _: f64| Some(between(&self.mesh.triangle(facet), &line));
-        match self.mesh.bvh().find_best(first.0, bound, leaf) {
-            Some((facet, (distance, away))) => Gap::new(distance, away, facet),
-            None => Gap::new(first.0, first.1, near),
+        match self.mesh.bvh().find_best(first.0.min(most), bound, leaf) {
+            Some((facet, (distance, away))) => Ok(Gap::new(distance, away, facet)),
+            None => at_first(false),
         }
     }
 
@@ -164,9 +190,14 @@ impl Solid {
 }
 
 impl Gap {
+    /// Where nothing is known yet but that it may be at this facet.
+    pub(crate) const fn somewhere(facet: u32) -> Self {
+        Self { distance: 0.0, direction: Vec3::new(0.0, 0.0, 0.0), facet, is_parted: false }
+    }
+
     fn new(distance: f64, away: Vector, facet: u32) -> Self {
         let direction = from_vector(away).try_normalize(0.0).unwrap_or_else(Vec3::zeros);
-        Self { distance, direction, facet }
+        Self { distance, direction, facet, is_parted: false }
     }
 }
 
