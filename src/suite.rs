@@ -25,7 +25,7 @@ pub fn run(args: &SuiteArgs) -> Result<(), Failure> {
     let (protocol, sources) = load(name).map_err(Failure::refused)?;
     let files = Files::new(folder, args)?;
     let registry = Registry::linked().map_err(Failure::refused)?;
-    let watch = Watch::start(args.time_limit);
+    let watch = Watch::start(args.work.time_limit);
     let bar = Bar::new(protocol.series.iter().map(|series| problems(series).len()).sum());
     let failed = Mutex::new(None);
     let told = |trial: &Trial, plans: &[Plan]| {
@@ -38,7 +38,7 @@ pub fn run(args: &SuiteArgs) -> Result<(), Failure> {
         }
     };
     let options = Options {
-        threads: usize::from(args.threads),
+        threads: usize::from(args.work.threads),
         stop: &watch,
         clock: &watch,
         judge: replayed::judge(args),
@@ -59,7 +59,7 @@ pub fn run(args: &SuiteArgs) -> Result<(), Failure> {
     }
     let outcomes = outcomes(&protocol, &trials);
     files.write(&json(&protocol, &outcomes, &trials), &markdown(name, &protocol, &outcomes))?;
-    match args.json {
+    match args.work.json {
         true => say(&json(&protocol, &outcomes, &trials)),
         false => say(&text(name, &protocol, &outcomes, &files)),
     }

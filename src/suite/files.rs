@@ -25,11 +25,11 @@ impl Files {
                 .map_err(|error| Failure::bad_input(format!("`{}`: {error}", folder.display())))
         };
         made(folder)?;
-        outputs::check(&[], &[(&results, Kind::Suite), (&summary, Kind::Suite)], args.overwrite)?;
+        outputs::check(&[], &[(&results, Kind::Suite), (&summary, Kind::Suite)], args.work.overwrite)?;
         if args.keep_plans {
             made(&plans)?;
         }
-        Ok(Self { results, summary, plans, overwrite: args.overwrite })
+        Ok(Self { results, summary, plans, overwrite: args.work.overwrite })
     }
 
     pub fn summary(&self) -> &Path {

@@ -1,6 +1,8 @@
 //! The replay of a plan, where the simulation is built in.
 
 use super::SuiteArgs;
+#[cfg(feature = "rapier")]
+use crate::Failure;
 use regrasp::suite::Judge;
 
 /// Who replays; nobody where that was not wished, or the program has no simulation.
@@ -17,8 +19,8 @@ pub fn judge(args: &SuiteArgs) -> Option<Judge<'static>> {
 
 /// As `regrasp replay` does by default.
 #[cfg(feature = "rapier")]
-fn replayed(plan: &regrasp::plan::Plan) -> Result<regrasp::suite::Replayed, String> {
-    let report = crate::replay::by_default(plan).map_err(|failure| failure.message().to_owned())?;
+fn replayed(plan: &regrasp::plan::Plan) -> Result<regrasp::suite::Replayed, Box<regrasp::api::Refusal>> {
+    let report = crate::replay::by_default(plan).map_err(Failure::into_refusal)?;
     let last = report.stages.last();
     Ok(regrasp::suite::Replayed {
         arrived: report.arrived,

@@ -3,6 +3,7 @@
 #![allow(missing_docs)]
 
 mod contact_models;
+mod dents;
 mod examples;
 mod local_planners;
 mod replays;

@@ -38,12 +38,12 @@ pub enum SuiteError {
     #[error(transparent)]
     Plan(#[from] StateError),
     /// A replay that cannot be made.
-    #[error("a plan of `{series}` cannot be replayed: {reason}")]
+    #[error("a plan of `{series}` cannot be replayed: {}", why.message)]
     Replay {
         /// The series.
         series: String,
-        /// Why.
-        reason: String,
+        /// Why, as whoever replays says it in fields.
+        why: Box<Refusal>,
     },
 }
 
@@ -63,7 +63,8 @@ impl Refuse for SuiteError {
             Self::Scenario(error) => error.refusal(),
             Self::Preset { error, .. } => error.refusal().told(self),
             Self::Run(error) => error.refusal(),
-            Self::Plan(_) | Self::Replay { .. } => Refusal::new("replay", self),
+            Self::Plan(_) => Refusal::new("replay", self),
+            Self::Replay { why, .. } => (**why).clone().told(self),
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::library::Files;
 use crate::{Attempt, Problem, Protocol, Replayed, Series, SuiteError, Trial, Turn, problems};
 use regrasp_api::{
-    GoalDescription, Pose, PoseDescription, Problem as Task, Rotation, StartDescription, Vec3,
+    GoalDescription, Pose, PoseDescription, Problem as Task, Refusal, Rotation, StartDescription, Vec3,
 };
 use regrasp_atlas::start_at;
 use regrasp_host::Registry;
@@ -15,8 +15,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-/// Replays a plan; why it cannot be replayed where it cannot.
-pub type Judge<'a> = &'a (dyn Fn(&Plan) -> Result<Replayed, String> + Sync);
+/// Replays a plan; why it cannot be replayed, in fields, where it cannot.
+pub type Judge<'a> = &'a (dyn Fn(&Plan) -> Result<Replayed, Box<Refusal>> + Sync);
 
 /// Told of every trial that has ended, with its plans.
 pub type Told<'a> = &'a (dyn Fn(&Trial, &[Plan]) + Sync);
@@ -162,7 +162,7 @@ impl Job<'_> {
         };
         let plan = run.plan.filter(|_| solved);
         if let (Some(judge), Some(plan)) = (self.options.judge, &plan) {
-            let failed = |reason| SuiteError::Replay { series: self.series.name.clone(), reason };
+            let failed = |why| SuiteError::Replay { series: self.series.name.clone(), why };
             attempt.replayed = Some(judge(plan).map_err(failed)?);
         }
         Ok(Some((attempt, plan)))

@@ -1,5 +1,6 @@
 //! Protocols run: the same on any number of threads; chains go on from where they ended.
 
+use regrasp_api::{Refusal, Refuse};
 use regrasp_contact_models as _;
 use regrasp_graph_strategies as _;
 use regrasp_host::Registry;
@@ -66,6 +67,20 @@ fn trials_are_the_same_on_two_threads_and_counted() {
     assert_eq!(outcome.chain.map(|chain| chain.mean), Some(3.0), "{one:?}");
     assert_eq!(outcome.revolutions.map(|turns| turns.mean), Some(0.5));
     assert_eq!(outcome.arrived, Some(3));
+}
+
+#[test]
+fn a_replay_that_cannot_be_made_keeps_its_fields() {
+    let refuses = |_: &Plan| {
+        let refusal = Refusal::new("out-of-range", "`scenario.object.mass` = 0 is too little");
+        Err(Box::new(refusal.key("scenario.object.mass").value(0)))
+    };
+    let options =
+        Options { threads: 1, stop: &NeverStops, clock: &Still, judge: Some(&refuses), told: &|_, _| {} };
+    let files = Files::BuiltIn(&[]);
+    let refusal = run(&protocol(), &files, &Registry::linked().unwrap(), &options).unwrap_err().refusal();
+    assert_eq!((refusal.code, refusal.key.as_deref()), ("out-of-range", Some("scenario.object.mass")));
+    assert!(refusal.message.contains("cannot be replayed: `scenario.object.mass` = 0"), "{refusal:?}");
 }
 
 #[test]

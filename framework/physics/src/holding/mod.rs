@@ -2,13 +2,15 @@
 //! little friction they need.
 
 mod bearing;
+mod edged;
 mod load;
 mod newton;
 mod share;
 
 pub(crate) use bearing::stacked;
 pub use bearing::{Bearing, Exerted, Press};
-pub use load::{Answer, Bearings, HeldLoad};
+pub use edged::{Edged, EdgesBalanced, Weights};
+pub use load::{Answer, Bearings, EdgesAnswer, HeldLoad};
 pub(crate) use newton::Search;
 pub use newton::{Balanced, Forces};
 pub(crate) use share::share_of;
