@@ -6,6 +6,7 @@ mod contact_models;
 mod dents;
 mod examples;
 mod local_planners;
+mod pyramids;
 mod replays;
 mod samplers;
 mod stability_tests;

@@ -41,6 +41,7 @@ enum Lie {
     SeesNoOtherFingers,
     EndsWithOldContacts,
     LiftsTooLow,
+    DipsOnItsWayUp,
 }
 
 /// The honest planner for a target.
@@ -207,6 +208,13 @@ impl Liar {
             Lie::TwiceTheStep if last > 12 && is_straight(task, path) => {
                 let kept = (0..=last).filter(|i| i % 8 == 0 || *i == last);
                 path.states = kept.map(|i| path.states[i].clone()).collect();
+            }
+            // A step up, half of it down again, and up.
+            Lie::DipsOnItsWayUp if last > 8 && path.states[0].holding() == reached.end.holding() => {
+                let back = finger.map(|f| path.states[1].joints[f].interpolate(&path.states[2].joints[f], 0.5));
+                let mut dip = path.states[2].clone();
+                finger.iter().zip(back).for_each(|(f, joints)| dip.joints[*f] = joints);
+                path.states.insert(3, dip);
             }
             // The states are right, the end keeps the contacts of the beginning.
             Lie::EndsWithOldContacts if last > 2 && self.slot == Slot::TransferPlanner => {
@@ -392,7 +400,8 @@ fn each_liar_of_the_regrasp_slot_fails_its_check_and_no_other() {
         "regrasp",
         (liar!(SLOT, Lie::MovesTheObject), "regrasp-others-rest"),
         (liar!(SLOT, Lie::SeesNoOtherFingers), "regrasp-collision-free"),
-        (liar!(SLOT, Lie::LiftsTooLow), "regrasp-touches-at-ends"),
+        (liar!(SLOT, Lie::LiftsTooLow), "regrasp-lifts"),
+        (liar!(SLOT, Lie::DipsOnItsWayUp), "regrasp-lifts"),
         (liar!(SLOT, Lie::StraightThrough), "regrasp-touches-at-ends"),
     );
 }

@@ -92,10 +92,7 @@ pub(super) fn succeeds<K: Kind>(subject: &Subject<'_>) -> Finding {
     kinds.dedup();
     for kind in kinds {
         let clear: Vec<_> = journeys.iter().filter(|journey| journey.case.clear == Some(kind)).collect();
-        // A simulation may see the object drop, or a fingertip slip on a motion that rolls on paper.
-        let simulated = |stop: &Reason| matches!(stop, Reason::Stray | Reason::Slip);
-        let stops = clear.iter().filter_map(|journey| journey.reached.stop);
-        let stops: Vec<_> = stops.filter(|stop| !simulated(stop)).collect();
+        let stops: Vec<_> = clear.iter().filter_map(|journey| journey.reached.stop).collect();
         ensure(2 * stops.len() <= clear.len(), || {
             format!(
                 "of {} motions with nothing in the way ({kind}) {} fail: {stops:?}",

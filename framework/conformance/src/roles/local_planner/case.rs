@@ -127,6 +127,14 @@ fn transfers() -> Vec<Case> {
         );
         add(bench, from, Vec3::new(0.0, 0.0, up), Vec3::zeros(), Some("long, straight"));
     }
+    // Three fingers hold, and the first rests before them: a little of a way is free, then one of those that
+    // hold meets it, or the ball does.
+    for leading in [[1.0, 0.0, 0.1], [0.3, 0.9, 0.2]] {
+        let holding = on_ball(free, [[0.0, 0.3, 1.0], leading, [-0.5, 0.87, -0.1], [-0.5, -0.87, 0.0]]);
+        let from = at_rest(free, &holding, 0);
+        add(free, from.clone(), Vec3::new(-1e-3, 0.0, 2e-3), Vec3::zeros(), Some("with a finger at rest"));
+        add(free, from, Vec3::new(0.045, 0.0, 0.0), Vec3::zeros(), None);
+    }
     for (key, bench, kind) in uneven() {
         for turn in [random.direction() * 0.03, random.direction() * 0.25] {
             let clear = (turn.norm() < 0.1).then_some(kind);
@@ -153,12 +161,16 @@ fn clasp(bench: &Bench) -> Configuration {
 
 /// Free fingertips on a ball in these directions.
 fn on_ball(bench: &Bench, directions: [[f64; 3]; 4]) -> Configuration {
+    on_directions(bench, directions).expect("each direction is within the finger's box")
+}
+
+/// Four fingertips on a ball in these directions; `None` where one does not reach.
+fn on_directions(bench: &Bench, directions: [[f64; 3]; 4]) -> Option<Configuration> {
     let contact = |finger: FingerIndex| {
         let u = Vec3::from(directions[finger.index()]).normalize();
         Some(bench.surface.project(&(u * 0.05), None).contact)
     };
-    let contacts = PerFinger::from_fn(4, contact);
-    closed(bench, Bench::center(), &contacts).expect("each direction is within the finger's box")
+    closed(bench, Bench::center(), &PerFinger::from_fn(4, contact))
 }
 
 /// Fingertips before, beside and behind the ball, one a little below.
@@ -279,12 +291,10 @@ fn regrasps() -> Vec<Case> {
     let (free, walled) = (Bench::free_sphere(), Bench::walled_sphere());
     let [from, to] = around(-1.0).map(|directions| on_ball(free, directions));
     cases.push(regrasp(free, from.clone(), &to, 0, None));
-    // To rest and back.
-    let mut resting = from.clone();
-    resting.contacts[FingerIndex(0)] = None;
-    resting.joints[FingerIndex(0)] = free.world.hand.finger(FingerIndex(0)).rest;
-    cases.push(regrasp(free, from.clone(), &resting, 0, None));
-    cases.push(regrasp(free, resting, &to, 0, None));
+    let resting = at_rest(free, &from, 0);
+    cases.push(regrasp(free, from.clone(), &resting, 0, Some("letting go")));
+    cases.push(regrasp(free, resting, &to, 0, Some("setting down")));
+    cases.extend([Bench::pinned_palm(), Bench::pinned_scene()].into_iter().filter_map(past_a_pin));
     // Between ball and wall, and with a finger that the grasp needs.
     let [from, to] = around(1.0).map(|directions| on_ball(walled, directions));
     cases.push(regrasp(walled, from, &to, 0, None));
@@ -304,6 +314,24 @@ fn regrasps() -> Vec<Case> {
     cases.push(regrasp(free, past[0].clone(), &past[1], 1, None));
     cases.extend(over_an_edge());
     cases
+}
+
+/// The configuration with a finger at rest.
+fn at_rest(bench: &Bench, q: &Configuration, finger: u8) -> Configuration {
+    let (mut q, finger) = (q.clone(), FingerIndex(finger));
+    (q.contacts[finger], q.joints[finger]) = (None, bench.world.hand.finger(finger).rest);
+    q
+}
+
+/// The first finger from one side of a pin to the other, the tip far above it: its links cannot pass.
+fn past_a_pin(bench: &'static Bench) -> Option<Case> {
+    let [from, to] = [1.0, -1.0].map(|side| {
+        let first = [0.35, 0.75 * side, 0.56];
+        on_directions(bench, [first, [0.1, 0.98, -0.2], [-1.0, 0.0, 0.0], [0.1, -0.98, -0.2]])
+    });
+    let (from, to) = (from?, to?);
+    let free = |q: &Configuration| bench.task().clearance.configuration_free(q, bench.fingers(), true).is_ok();
+    (free(&from) && free(&to)).then(|| regrasp(bench, from, &to, 0, None))
 }
 
 /// One finger of a clasp from a wide face of the bar to a narrow one, and the other way round.

@@ -174,6 +174,11 @@ pub(crate) const REGRASP: &[Law] = laws!(
         name: "regrasp-touches-at-ends",
         why: "a fingertip that scrapes along the object moves it",
         check: special::touches_at_ends,
+    },
+    Law {
+        name: "regrasp-lifts",
+        why: "a fingertip that comes down again beside its contact, or does not rise, slides",
+        check: special::lifts,
     }
 );
 

@@ -5,10 +5,10 @@ mod spread;
 
 use crate::fixtures::{Bench, to_object};
 use crate::law::{Always, Law, Subject, context, counted_once, pure, random};
-use crate::reference::{RejectionSampler, closest_on_mesh};
+use crate::reference::{RejectionSampler, closest_on_facet, closest_on_mesh};
 use crate::report::{Fault, Finding, broken, ensure};
 use regrasp_api::{
-    Build, CallError, ClosedChainSampler, Configuration, Context, FingerIndex, FingerSet, Hand, Pose,
+    Build, CallError, ClosedChainSampler, Configuration, Contact, Context, FingerIndex, FingerSet, Hand, Pose,
     PoseRequest, Reason, Slot, angle_between,
 };
 
@@ -162,8 +162,18 @@ fn succeeds(subject: &Subject<'_>) -> Finding {
 
 fn closed(subject: &Subject<'_>) -> Finding {
     on_samples(subject, |bench, _, _, q| {
+        let length = q.X_HO.rotation.coords.norm();
+        ensure((length - 1.0).abs() <= 1e-9, || format!("the orientation has length {length:.9}"))?;
         for finger in q.holding().iter() {
             let tip = bench.world.hand.tip_center(finger, &q.joints[finger]);
+            let mesh = &bench.world.object.mesh;
+            let held = |c: &Contact| {
+                (c.facet as usize) < mesh.facets().len()
+                    && (closest_on_facet(mesh, c.facet, &c.p_OC) - c.p_OC).norm() <= 1e-7
+            };
+            ensure(q.contacts[finger].as_ref().is_none_or(held), || {
+                format!("the facet of finger {} does not hold its contact: {:?}", finger.0, q.contacts[finger])
+            })?;
             let gap = (q.contact_tip_center(finger, bench.radius()).unwrap_or(tip) - tip).norm();
             ensure(gap <= CLOSED, || format!("finger {} is {gap:e} m off its contact", finger.0))?;
             let off = closest_on_mesh(&bench.world.object.mesh, &to_object(&q.X_HO, &tip)).distance
@@ -225,7 +235,14 @@ fn varies(subject: &Subject<'_>) -> Finding {
         found.extend(sampler.sample(&bench.task(), request, bench.fingers(), &mut context(key))?);
     }
     let alike = found.windows(2).filter(|pair| pair[0] == pair[1]).count();
-    ensure(alike == 0, || format!("{alike} of {} samples of different streams are alike", found.len()))
+    ensure(alike == 0, || format!("{alike} of {} samples of different streams are alike", found.len()))?;
+    let near = somewhere(bench, 1);
+    for key in 0..8 {
+        let request = PoseRequest::Near { configuration: &near, radius: 3e-3, angle: 0.2 };
+        let found = sampler.sample(&bench.task(), request, bench.fingers(), &mut context(key))?;
+        ensure(found.as_ref() != Some(&near), || "what is drawn near a configuration is that one itself".into())?;
+    }
+    Ok(())
 }
 
 fn counts_reasons(subject: &Subject<'_>) -> Finding {

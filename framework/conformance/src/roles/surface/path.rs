@@ -1,7 +1,7 @@
 //! Laws of shortest paths.
 
 use super::ground::{Ground, on_each};
-use super::point::is_contact;
+use super::point::{is_contact, names_its_facet};
 use crate::law::{Subject, context, counted_once};
 use crate::reference::FacetSurface;
 use crate::report::{Fault, Finding, ensure};
@@ -31,14 +31,15 @@ fn on_paths(
 }
 
 pub(super) fn endpoints(subject: &Subject<'_>) -> Finding {
-    on_paths(subject, |_, (from, to), path| {
+    on_paths(subject, |ground, (from, to), path| {
         let first = path.waypoints.first().map(|w| (w.contact, w.lift_length));
         let last = path.waypoints.last().map(|w| w.contact);
         ensure(first == Some((*from, 0.0)) && last == Some(*to), || {
             format!("the path from {from:?} to {to:?} begins at {first:?} and ends at {last:?}")
         })?;
         let ends = [path.at(0.0), path.at(1.0)];
-        ensure(ends == [*from, *to], || format!("its ends are {ends:?}, not {from:?} and {to:?}"))
+        ensure(ends == [*from, *to], || format!("its ends are {ends:?}, not {from:?} and {to:?}"))?;
+        restarts(ground, (from, to), path)
     })?;
     // From a contact to itself.
     on_each(subject, |ground| {
@@ -49,12 +50,21 @@ pub(super) fn endpoints(subject: &Subject<'_>) -> Finding {
     })
 }
 
+/// What a path held before is none of its waypoints.
+fn restarts(ground: &Ground, (from, to): (&Contact, &Contact), path: &SurfacePath) -> Finding {
+    let old = Waypoint { contact: *to, lift_length: 1.0 };
+    let mut used = SurfacePath { waypoints: vec![old; 2], length: 1.0 };
+    ground.surface.geodesic(from, to, &mut used, &mut context(0))?;
+    ensure(used == *path, || "it goes on where the path that it is given ends, and does not restart it".into())
+}
+
 pub(super) fn on_surface(subject: &Subject<'_>) -> Finding {
     on_paths(subject, |ground, _, path| {
         let (inner, convex) = (path.waypoints.len().saturating_sub(1), ground.is_convex());
         for waypoint in path.waypoints.get(1..inner).unwrap_or_default() {
             let off = ground.closest(&waypoint.contact.p_OC).distance;
             ensure(off.abs() <= 1e-7, || format!("a waypoint {off:e} m off the surface: {waypoint:?}"))?;
+            names_its_facet(ground, &waypoint.contact)?;
             if convex {
                 is_contact(ground, &waypoint.contact, 1e-7)?;
             }
@@ -107,17 +117,19 @@ pub(super) fn length(subject: &Subject<'_>) -> Finding {
     })
 }
 
+/// By how much (relative) a fingertip's way over a dented object may be longer than that of a point.
+const AROUND: f64 = 0.5;
+
 pub(super) fn shortest(subject: &Subject<'_>) -> Finding {
     let tolerance = subject.demands.geodesic_tolerance;
     let mut reference: Option<(&str, FacetSurface)> = None;
     on_paths(subject, |ground, (from, to), path| {
-        if !ground.is_convex() {
-            return Ok(());
-        }
         if reference.as_ref().is_none_or(|(name, _)| *name != ground.name) {
             reference = Some((ground.name, FacetSurface::new(&ground.object.mesh, ground.radius)));
         }
         let (_, facets) = reference.as_ref().expect("it was just made");
+        // Where a fingertip cannot follow every dent it may have to go round, but not much.
+        let tolerance = if ground.is_convex() { tolerance } else { AROUND };
         let longest = over_facets(facets, from, to)?;
         ensure(path.length <= longest * (1.0 + tolerance) + 1e-9, || {
             format!("length {} m, but {longest} m is possible: {from:?} {to:?}", path.length)
