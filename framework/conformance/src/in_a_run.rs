@@ -28,8 +28,8 @@ pub struct Trial {
     pub slot: Slot,
     /// How it ended.
     pub outcome: Outcome,
-    /// How often the plugin was called, as it counts.
-    pub calls: u64,
+    /// How many of its calls were looked at.
+    pub looks: u64,
     /// The call that broke a law, as `regrasp plan --audit-save` keeps it: [`crate::replay`] makes it again.
     pub case: Option<Value>,
 }
@@ -52,12 +52,18 @@ macro_rules! cast {
 
         impl Cast {
             /// Plans with the plugin of one slot under audit.
-            fn plan(&self, slot: Slot, bench: &Bench, problem: &Problem, auditor: &Auditor<'_>) -> Planned {
+            fn plan(
+                &self,
+                slot: Slot,
+                bench: &Bench,
+                problem: &Problem,
+                auditor: &Auditor<'_>,
+            ) -> Result<(), PlanError> {
                 $(let $field = Audited::new(&*self.$field, Slot::$slot, auditor);)+
                 let plugins = Plugins {
                     $($field: if slot == Slot::$slot { &$field } else { &*self.$field },)+
                 };
-                let outcome = solve(&Request {
+                solve(&Request {
                     problem,
                     hand: &*bench.world.hand,
                     clearance: &bench.world.clearance,
@@ -68,15 +74,13 @@ macro_rules! cast {
                     interrupt: &Uninterrupted,
                     clock: &Still,
                     progress: &Silent,
-                })?;
-                Ok(outcome.tally.calls(slot))
+                })
+                .map(drop)
             }
         }
     };
 }
 with_slots!(cast);
-
-type Planned = Result<u64, PlanError>;
 
 impl Cast {
     /// The kit's references.
@@ -133,7 +137,7 @@ fn trial(entry: &Entry, slot: Slot, demands: &Demands) -> Trial {
     let problem = problem();
     let bench = Bench::of(&problem).expect("the kit's own problems are sound");
     let plugin = entry.id.to_owned();
-    let mut trial = Trial { plugin: plugin.clone(), slot, outcome: Outcome::Passed, calls: 0, case: None };
+    let mut trial = Trial { plugin: plugin.clone(), slot, outcome: Outcome::Passed, looks: 0, case: None };
     let parts = bench.parts();
     let built = Cast::references(&parts).and_then(|mut cast| {
         cast.put(entry, slot, &demands.settings, &parts)?;
@@ -150,14 +154,14 @@ fn trial(entry: &Entry, slot: Slot, demands: &Demands) -> Trial {
     let planned = cast.plan(slot, &bench, &problem, &auditor);
     // A breach in a call that returns no `Result` is this thread's fault.
     take_fault();
-    trial.calls = *planned.as_ref().unwrap_or(&0);
+    trial.looks = auditor.looks();
     trial.outcome = match (auditor.breach(), planned) {
         (Some(breach), _) => {
             trial.case = Some(case(&breach, &problem, &demands.settings));
             Outcome::Failed(breach.error().to_string())
         }
-        (None, Ok(0)) => Outcome::NotApplicable("the run never asks it".into()),
-        (None, Ok(_)) => Outcome::Passed,
+        (None, Ok(())) if trial.looks == 0 => Outcome::NotApplicable("the run never asks it".into()),
+        (None, Ok(())) => Outcome::Passed,
         (None, Err(PlanError::Call(CallError::Unsupported { reason, .. }))) => Outcome::NotApplicable(reason),
         (None, Err(error @ PlanError::Call(_))) => Outcome::Failed(format!("the run ends with {error}")),
         // Too few fingers for a contact model, say.
@@ -184,10 +188,10 @@ fn case(breach: &Breach, problem: &Problem, settings: &str) -> Value {
 impl Trial {
     /// One line: how many calls kept the laws, or why there was no run.
     fn line(&self) -> String {
-        let Self { plugin, slot, outcome, calls, .. } = self;
+        let Self { plugin, slot, outcome, looks, .. } = self;
         let slot = slot.name();
         match outcome {
-            Outcome::Passed => format!("`{plugin}`: {calls} calls of a run in `{slot}` audited"),
+            Outcome::Passed => format!("`{plugin}`: {looks} calls of a run in `{slot}` audited"),
             Outcome::NotApplicable(reason) => format!("`{plugin}`: no run in `{slot}` ({reason})"),
             Outcome::Failed(reason) => format!("`{plugin}`, in a run in `{slot}`: {reason}"),
         }

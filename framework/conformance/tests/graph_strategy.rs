@@ -80,7 +80,11 @@ macro_rules! liar {
             check: check_settings::<NoSettings>,
             build: Build::GraphStrategy(|json, _| {
                 NoSettings::from_json(json)?;
-                Ok(Box::new(Liar { lie: $lie, home: std::thread::current().id(), asked: AtomicUsize::new(0) }))
+                Ok(Box::new(Liar {
+                    lie: $lie,
+                    home: std::thread::current().id(),
+                    asked: AtomicUsize::new(0),
+                }))
             }),
         }
     };

@@ -6,7 +6,7 @@ use regrasp_api::*;
 use regrasp_conformance::reference::{
     EdgeClosure, FacetSurface, FineRolling, GraspLine, Interleaving, LiftOver, RejectionSampler, RoundCones,
 };
-use regrasp_conformance::{Demands, Outcome, Trial, audit_in_a_run, check, replay};
+use regrasp_conformance::{Demands, Outcome, Trial, audit_in_a_run, replay};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A plugin that is right for its first calls.
@@ -214,14 +214,6 @@ fn the_references_keep_the_laws_in_a_run_and_every_slot_is_asked() {
     for (entry, _) in every_slot!(usize::MAX / 1000) {
         let trial = trial(&entry);
         assert_eq!(trial.outcome, Outcome::Passed, "{}: {trial:?}", trial.slot.name());
-        assert!(trial.calls > 0 && trial.case.is_none(), "{trial:?}");
+        assert!(trial.looks > 0 && trial.case.is_none(), "{trial:?}");
     }
-}
-
-/// The checks alone miss some of these: that is what a run is for.
-#[test]
-fn the_checks_pass_a_plugin_that_tires_late() {
-    let entry = tired!(LocalPlanner, TransferPlanner, 4, |_| FineRolling);
-    let failed = check(&entry).failed();
-    assert!(failed.iter().all(|name| name.starts_with("entry-")), "{failed:?}");
 }

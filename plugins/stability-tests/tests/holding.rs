@@ -262,8 +262,7 @@ fn what_edges_hold_is_proved_by_weights_within_cones_and_efforts() {
                     case.contacts.iter().map(|c| c.0 * 0.03).sum::<Vec3>() / case.contacts.len() as f64;
                 let at = |p: Vec3| v_O + w_O.cross(&(p - centroid));
                 let work = -(case.g_O * 0.1).dot(&at(Vec3::zeros()));
-                let most: f64 =
-                    case.contacts.iter().map(|c| most_power_of_edges(c, &at(c.0 * 0.03))).sum();
+                let most: f64 = case.contacts.iter().map(|c| most_power_of_edges(c, &at(c.0 * 0.03))).sum();
                 assert!(work > most * (1.0 - 1e-6), "{k}: {work} {most}");
             }
             Certificate::None => assert_eq!(assessed.stability, Stability::Undecided),

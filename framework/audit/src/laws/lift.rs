@@ -63,9 +63,9 @@ fn instants(motion: &Motion<'_>, finger: FingerIndex) -> Vec<Instant> {
 }
 
 /// From a contact until it is high enough.
-fn rises<'i>(
+fn rises(
     finger: FingerIndex,
-    row: &mut dyn Iterator<Item = &'i Instant>,
+    row: &mut dyn Iterator<Item = &'_ Instant>,
     enough: f64,
     (closure, slip): (f64, f64),
 ) -> Kept {

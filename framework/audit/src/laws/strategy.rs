@@ -22,7 +22,8 @@ mod tests {
     #[test]
     fn other_units_are_told() {
         assert!(vicinity_kept(&Vicinity::default()).is_ok());
-        for (radius, angle) in [(10.0, 0.5), (0.01, 30.0), (0.0, 0.5), (0.01, f64::NAN), (f64::INFINITY, 1.0)] {
+        for (radius, angle) in [(10.0, 0.5), (0.01, 30.0), (0.0, 0.5), (0.01, f64::NAN), (f64::INFINITY, 1.0)]
+        {
             assert!(vicinity_kept(&Vicinity { radius, angle }).is_err(), "{radius} {angle}");
         }
     }

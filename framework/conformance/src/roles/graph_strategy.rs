@@ -121,7 +121,10 @@ fn solves(subject: &Subject<'_>) -> Finding {
     }
     let solved = ends.iter().filter(|end| **end == Outcome::Solved).count();
     ensure(2 * solved >= ends.len(), || {
-        format!("of {} problems in which every third pair of nodes can be joined it solves {solved}", ends.len())
+        format!(
+            "of {} problems in which every third pair of nodes can be joined it solves {solved}",
+            ends.len()
+        )
     })
 }
 

@@ -19,7 +19,6 @@ impl Mistaken {
             "no-palm" => |pair| !matches!(pair, (Body::Palm, _) | (_, Body::Palm)),
             "no-obstacles" => |pair| !matches!(pair, (Body::Obstacle(_), _) | (_, Body::Obstacle(_))),
             "no-links-of-others" => |pair| !matches!(pair, (Body::Link(..), Body::Link(..))),
-            "no-object" => |pair| !matches!(pair, (Body::Object, _) | (_, Body::Object)),
             _ => |_| true,
         }
     }
@@ -63,12 +62,13 @@ impl Mistaken {
                     end.n_O = n_O;
                 }
             }
-            "straight-down" if last > 8 => {
-                // No lift at the end: from high above straight to the contact.
-                let (a, b) = (states[last / 2].joints[finger], states[last].joints[finger]);
-                for (k, q) in states[last / 2..last].iter_mut().enumerate() {
-                    let s = k as f64 / (last - last / 2) as f64;
-                    q.joints[finger] = a.interpolate(&b, s);
+            "down-again" if last > 12 => {
+                // Up, back to the first height, and up again.
+                let (low, high) = (states[1].joints[finger], states[4].joints[finger]);
+                for (k, s) in [0.75, 0.5, 0.25, 0.0, 0.25, 0.5, 0.75].into_iter().enumerate() {
+                    let mut q = states[4].clone();
+                    q.joints[finger] = low.interpolate(&high, s);
+                    states.insert(5 + k, q);
                 }
             }
             "another-joint" if last > 2 => {
@@ -91,7 +91,9 @@ impl LocalPlanner for Mistaken {
     ) -> Result<Reached, CallError> {
         let refused = self.refuses(from, to);
         let clearance = crate::Blinkered { all: task.clearance, sees: self.sees() };
-        let seen = Task { clearance: &clearance, ..*task };
+        let low = Resolution { lift: 1.5e-3, ..*task.resolution };
+        let resolution = if self.0 == "barely-up" { &low } else { task.resolution };
+        let seen = Task { clearance: &clearance, resolution, ..*task };
         let mut own = Path::default();
         let mut reached = LiftOver.connect(&seen, from, to, Some(&mut own), context)?;
         match self.0.as_str() {
@@ -140,18 +142,18 @@ fn caught() {
             ("fingertips-alone", "regrasp-collision-free"),
             ("no-palm", "regrasp-collision-free"),
             ("no-obstacles", "regrasp-collision-free"),
-            ("no-object", "regrasp-collision-free|regrasp-touches-at-ends"),
             ("cannot-release", "regrasp-succeeds"),
             ("cannot-place", "regrasp-succeeds"),
             ("short-ways-alone", "regrasp-succeeds"),
             ("never-over-edges", "regrasp-succeeds"),
+            ("down-again", "regrasp-lifts"),
+            ("barely-up", "regrasp-lifts"),
             ("backwards", "regrasp-ends"),
             ("jumps", "regrasp-steps"),
             ("coarse", "regrasp-steps"),
             ("keeps-its-contact", "regrasp-touches-at-ends"),
             ("touches-early", "regrasp-touches-at-ends"),
             ("old-normal", "regrasp-ends|regrasp-target"),
-            ("straight-down", "regrasp-touches-at-ends|regrasp-collision-free"),
             ("another-joint", "regrasp-others-rest"),
             ("stores-what-failed", "regrasp-ends"),
             ("half-way-there", "regrasp-fraction"),

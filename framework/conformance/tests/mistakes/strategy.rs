@@ -47,7 +47,6 @@ impl GraphStrategy for Mistaken {
             ("millimetres", _) if growing => {
                 Action::Extend(graph.start(), Vicinity { radius: 10.0, angle: 0.5 }, Link::Components)
             }
-            ("one-sample-more", Action::Stop) if samples == most => Action::Explore(Link::Components),
             ("first-goal-alone", Action::Query) if !joined_first => {
                 if samples < most {
                     Action::Explore(Link::Components)
@@ -101,7 +100,6 @@ fn caught() {
             ("extends-the-newest-alone", "strategy-solves"),
             ("degrees", "strategy-sensible"),
             ("millimetres", "strategy-sensible"),
-            ("one-sample-more", "strategy-stops"),
             ("first-goal-alone", "strategy-queries"),
             ("tries-again", "strategy-not-futile|strategy-pure"),
             ("counts-on-its-own", "strategy-pure"),

@@ -8,8 +8,8 @@ use crate::law::{Always, Law, Subject, context, counted_once, pure, random};
 use crate::reference::{RejectionSampler, closest_on_facet, closest_on_mesh};
 use crate::report::{Fault, Finding, broken, ensure};
 use regrasp_api::{
-    Build, CallError, ClosedChainSampler, Configuration, Contact, Context, FingerIndex, FingerSet, Hand, Pose,
-    PoseRequest, Reason, Slot, angle_between,
+    Build, CallError, ClosedChainSampler, Configuration, Contact, Context, FingerIndex, FingerSet, Hand,
+    Pose, PoseRequest, Reason, Slot, angle_between,
 };
 
 pub(crate) const LAWS: &[Law] = &[
@@ -172,7 +172,10 @@ fn closed(subject: &Subject<'_>) -> Finding {
                     && (closest_on_facet(mesh, c.facet, &c.p_OC) - c.p_OC).norm() <= 1e-7
             };
             ensure(q.contacts[finger].as_ref().is_none_or(held), || {
-                format!("the facet of finger {} does not hold its contact: {:?}", finger.0, q.contacts[finger])
+                format!(
+                    "the facet of finger {} does not hold its contact: {:?}",
+                    finger.0, q.contacts[finger]
+                )
             })?;
             let gap = (q.contact_tip_center(finger, bench.radius()).unwrap_or(tip) - tip).norm();
             ensure(gap <= CLOSED, || format!("finger {} is {gap:e} m off its contact", finger.0))?;
@@ -240,7 +243,9 @@ fn varies(subject: &Subject<'_>) -> Finding {
     for key in 0..8 {
         let request = PoseRequest::Near { configuration: &near, radius: 3e-3, angle: 0.2 };
         let found = sampler.sample(&bench.task(), request, bench.fingers(), &mut context(key))?;
-        ensure(found.as_ref() != Some(&near), || "what is drawn near a configuration is that one itself".into())?;
+        ensure(found.as_ref() != Some(&near), || {
+            "what is drawn near a configuration is that one itself".into()
+        })?;
     }
     Ok(())
 }

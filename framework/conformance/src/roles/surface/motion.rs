@@ -23,7 +23,9 @@ pub(super) fn walk(subject: &Subject<'_>) -> Finding {
                 ensure(!short || chord >= 0.4 * distance - 1e-9, text)?;
                 let longer = ground.surface.walk(&from, &(direction * 3.0), distance);
                 let off = (longer.p_OC - to.p_OC).norm();
-                ensure(off <= 1e-7, || format!("with three times the direction it ends {off:e} m beside {to:?}"))?;
+                ensure(off <= 1e-7, || {
+                    format!("with three times the direction it ends {off:e} m beside {to:?}")
+                })?;
                 if let Some(Primitive::Cuboid { half_size }) = ground.object.primitive {
                     let tangent = direction - from.n_O * from.n_O.dot(&direction);
                     let flat = from.p_OC + tangent.normalize() * distance;

@@ -39,6 +39,7 @@ pub(super) fn endpoints(subject: &Subject<'_>) -> Finding {
         })?;
         let ends = [path.at(0.0), path.at(1.0)];
         ensure(ends == [*from, *to], || format!("its ends are {ends:?}, not {from:?} and {to:?}"))?;
+        between_the_same_facets(ground, (from, to))?;
         restarts(ground, (from, to), path)
     })?;
     // From a contact to itself.
@@ -50,12 +51,36 @@ pub(super) fn endpoints(subject: &Subject<'_>) -> Finding {
     })
 }
 
+/// Another point of the facet that holds a contact.
+fn beside(ground: &Ground, contact: &Contact) -> Contact {
+    let corners = ground.object.mesh.corners(contact.facet);
+    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    Contact {
+        p_OC: contact.p_OC.lerp(&middle, 0.3),
+        n_O: ground.object.mesh.normal(contact.facet),
+        ..*contact
+    }
+}
+
+/// A path between the same facets is another one.
+fn between_the_same_facets(ground: &Ground, (from, to): (&Contact, &Contact)) -> Finding {
+    let (a, b) = (beside(ground, from), beside(ground, to));
+    let path = match ground.path(&a, &b) {
+        Err(Fault::Skip(_)) => return Ok(()),
+        path => path?,
+    };
+    let ends = [path.waypoints.first(), path.waypoints.last()].map(|w| w.map(|w| w.contact));
+    ensure(ends == [Some(a), Some(b)], || format!("the path from {a:?} to {b:?} has the ends {ends:?}"))
+}
+
 /// What a path held before is none of its waypoints.
 fn restarts(ground: &Ground, (from, to): (&Contact, &Contact), path: &SurfacePath) -> Finding {
     let old = Waypoint { contact: *to, lift_length: 1.0 };
     let mut used = SurfacePath { waypoints: vec![old; 2], length: 1.0 };
     ground.surface.geodesic(from, to, &mut used, &mut context(0))?;
-    ensure(used == *path, || "it goes on where the path that it is given ends, and does not restart it".into())
+    ensure(used == *path, || {
+        "it goes on where the path that it is given ends, and does not restart it".into()
+    })
 }
 
 pub(super) fn on_surface(subject: &Subject<'_>) -> Finding {
