@@ -65,8 +65,8 @@ fn edges_hold_within_efforts_and_the_verifier_proves_it() {
     };
     let check = stability(&plan);
     assert!(check.ok && check.worst.is_some() && check.place.note.is_none(), "{check:?}");
-    // What the fingers cannot give is not proved: ten times the weight, a twentieth of the efforts, a claim that
-    // means nothing.
+    // What the fingers cannot give is not proved: ten times the weight, a twentieth of the efforts, a claim
+    // that means nothing.
     let mut heavy = plan.clone();
     heavy.scenario.problem.object.mass *= 10.0;
     assert!(!stability(&heavy).ok);

@@ -112,19 +112,19 @@ fn queries(subject: &Subject<'_>) -> Finding {
     Ok(())
 }
 
+/// Problems that a strategy is to solve.
+const PROBLEMS: u64 = 8;
+
 fn solves(subject: &Subject<'_>) -> Finding {
-    let strategy = build(subject)?;
-    let mut ends = Vec::new();
-    for key in 0..8 {
+    let (strategy, mut joined) = (build(subject)?, 0);
+    for key in 0..PROBLEMS {
         let mut graph = SquareGraph::new(FAIR, 50 + key);
-        ends.push(run(&*strategy, &mut graph, 50 + key, |_, _| Ok(()))?);
+        let end = run(&*strategy, &mut graph, 50 + key, |_, _| Ok(()))?;
+        // That a path is asked for is another law.
+        joined += u64::from(end == Outcome::Solved || graph.joined());
     }
-    let solved = ends.iter().filter(|end| **end == Outcome::Solved).count();
-    ensure(2 * solved >= ends.len(), || {
-        format!(
-            "of {} problems in which every third pair of nodes can be joined it solves {solved}",
-            ends.len()
-        )
+    ensure(2 * joined >= PROBLEMS, || {
+        format!("of {PROBLEMS} problems in which every third pair of nodes can be joined it joins {joined}")
     })
 }
 

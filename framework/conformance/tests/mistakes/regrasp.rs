@@ -32,7 +32,7 @@ impl Mistaken {
                 let [a, b] = [from.contacts[*finger].as_ref(), *contact];
                 a.zip(b).is_some_and(|(a, b)| (a.p_OC - b.p_OC).norm() > 0.01)
             }
-            "never-over-edges" => {
+            "one-side-alone" => {
                 let [a, b] = [from.contacts[*finger].as_ref(), *contact];
                 a.zip(b).is_some_and(|(a, b)| a.n_O.dot(&b.n_O) < 0.5)
             }
@@ -145,7 +145,7 @@ fn caught() {
             ("cannot-release", "regrasp-succeeds"),
             ("cannot-place", "regrasp-succeeds"),
             ("short-ways-alone", "regrasp-succeeds"),
-            ("never-over-edges", "regrasp-succeeds"),
+            ("one-side-alone", "regrasp-succeeds"),
             ("down-again", "regrasp-lifts"),
             ("barely-up", "regrasp-lifts"),
             ("backwards", "regrasp-ends"),

@@ -173,7 +173,7 @@ fn caught() {
             ("fraction-of-the-goal", "transfer-fraction"),
             ("free-fingers-follow", "transfer-same-fingers|transfer-ends"),
             ("cones-at-rest", "transfer-stable"),
-            ("remembers-the-start-alone", "transfer-ends|transfer-target"),
+            ("remembers-the-start-alone", "transfer-pure"),
         ],
     );
 }

@@ -1,13 +1,13 @@
 //! Closure, equilibrium, or holding within efforts, of contacts whose cones the plan records one by one:
-//! elliptic ones as they are where all of a grasp are elliptic, otherwise cones of edges, and elliptic ones by
-//! edges inside them; holding is always looked at by edges.
+//! elliptic ones as they are where all of a grasp are elliptic, otherwise cones of edges, and elliptic ones
+//! by edges inside them; holding is always looked at by edges.
 //!
 //! The edges' wrenches span all of space positively, which is closure, exactly if they have rank 6 and some
 //! positive combination of all of them is zero (A. J. Goldman, A. W. Tucker, "Polyhedral convex cones",
 //! 1956). Such a combination is a proof that arithmetic can check, whoever found it.
 
-use super::edge_hold::{EdgeHold, Edges};
-use super::edges::{cone, exerted};
+use super::edge_hold::EdgeHold;
+use super::edges::{Edges, cone, exerted};
 use super::force::{self, Contact};
 use super::held::Row;
 use super::load::LoadCheck;
@@ -102,8 +102,9 @@ impl ConesCheck {
         if self.load.is_some() {
             return self.state_load(leg, state, R_HO, &held);
         }
-        if let Some(hold) = &self.hold {
-            let found = hold.prove(&self.edges(&held, hand, frames), R_HO);
+        if let Some(share) = self.hold.as_ref().map(EdgeHold::friction_factor) {
+            let edges = self.edges(&held, share, hand, frames);
+            let found = self.hold.as_mut().map_or(Err(0.0), |hold| hold.prove(&edges, R_HO));
             self.failures += usize::from(found.is_err());
             return self.gauge.note(found.unwrap_or_else(|slack| slack), || leg.at(state));
         }
@@ -200,9 +201,14 @@ impl ConesCheck {
         Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z)
     }
 
-    /// Each contact's edges at the share of the friction that the plan relies on, with the joints behind it.
-    fn edges(&self, held: &[(usize, Touch, Cone<'_>)], hand: &Chains, frames: &Frames) -> Vec<Edges> {
-        let share = self.hold.as_ref().map_or(1.0, EdgeHold::friction_factor);
+    /// Each contact's edges at this share of the friction, with the joints behind it.
+    fn edges(
+        &self,
+        held: &[(usize, Touch, Cone<'_>)],
+        share: f64,
+        hand: &Chains,
+        frames: &Frames,
+    ) -> Vec<Edges> {
         let contact = |(finger, touch, cone): &(usize, Touch, Cone<'_>)| {
             let edges = exerted(touch, cone, share);
             let rows = hand.rows(*finger, frames, &touch.p_OC, &-touch.n_O);

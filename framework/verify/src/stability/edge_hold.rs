@@ -1,13 +1,16 @@
-//! Weights of cones' edges, within the joints' efforts, that hold the object's weight and a load at a share of
-//! the friction: a proof by arithmetic, whoever found the weights.
+//! Weights of cones' edges, within the joints' efforts, that hold the object's weight and a load at a share
+//! of the friction: a proof by arithmetic, whoever found the weights.
 
+use super::edges::Edges;
 use super::load::icosahedron;
 use super::socp;
-use nalgebra::{Cholesky, DVector, Matrix6, Vector6};
+use nalgebra::{Cholesky, Matrix6, Vector6};
 use regrasp_api::{HoldLoad, Rotation, Vec3};
 
 /// The least room of a proof; weights in units of the load, efforts in parts of their limits.
 const LEAST_ROOM: f64 = 1e-8;
+/// The part of the solver's room below which carried weights are no longer taken.
+const DWINDLED: f64 = 0.4;
 
 /// What must be held.
 pub(super) struct EdgeHold {
@@ -16,13 +19,10 @@ pub(super) struct EdgeHold {
     length: f64,
     /// What forces are divided by (N).
     unit: f64,
-}
-
-/// One contact: the wrenches of its cone's edges at unit normal force, and what each takes of each joint's
-/// effort, of its limit (1/N).
-pub(super) struct Edges {
-    pub(super) columns: Vec<Vector6<f64>>,
-    pub(super) efforts: Vec<DVector<f64>>,
+    /// The last weights for each wrench that is wanted ...
+    carried: Vec<Vec<f64>>,
+    /// ... and the room that the solver found when it was last asked.
+    solved: f64,
 }
 
 impl EdgeHold {
@@ -39,7 +39,14 @@ impl EdgeHold {
             && length.is_finite();
         let weight_H = if weight { weight_H } else { Vec3::zeros() };
         let unit = weight_H.norm().max(disturbance_force).max(disturbance_torque / length);
-        (sound && unit > 0.0).then_some(Self { load: *load, weight_H, length, unit })
+        (sound && unit > 0.0).then(|| Self {
+            load: *load,
+            weight_H,
+            length,
+            unit,
+            carried: Vec::new(),
+            solved: 0.0,
+        })
     }
 
     /// The share of the friction that the plan relies on.
@@ -47,34 +54,26 @@ impl EdgeHold {
         self.load.friction_factor
     }
 
-    /// The room with which the contacts are proved to hold the load on the object in this orientation; `Err`
-    /// gives what could not be proved.
-    pub(super) fn prove(&self, contacts: &[Edges], R_HO: &Rotation) -> Result<f64, f64> {
-        let columns: Vec<&Vector6<f64>> = contacts.iter().flat_map(|contact| &contact.columns).collect();
-        let gram: Matrix6<f64> = columns.iter().map(|column| *column * column.transpose()).sum();
-        let factor = Cholesky::new(gram).ok_or(f64::NEG_INFINITY)?;
-        let singular = 1.0 / factor.inverse().norm().sqrt();
-        let most = self.load.max_normal_force.map(|most| most / self.unit);
+    /// The room with which the contacts are proved to hold the load on the object in this orientation, by the
+    /// carried weights, else (or where their room has dwindled) by the solver's; `Err` gives what could not be
+    /// proved.
+    pub(super) fn prove(&mut self, contacts: &[Edges], R_HO: &Rotation) -> Result<f64, f64> {
         let scaled: Vec<Edges> = contacts.iter().map(|contact| contact.over(self.unit)).collect();
-        let steepest = 1.0 + scaled.iter().map(Edges::steepest).fold(0.0, f64::max);
-        let mut least = f64::INFINITY;
-        for wanted in self.wanted(R_HO) {
-            let found = socp::best_weights_within(&scaled, most, &wanted);
-            let mut weights = found.ok_or(f64::NEG_INFINITY)?;
-            let residual = |weights: &[f64]| -> Vector6<f64> {
-                columns.iter().zip(weights).map(|(column, x)| *column * *x).sum::<Vector6<f64>>() - wanted
-            };
-            // The closest weights that give exactly the wanted wrench, up to rounding.
-            let correction = factor.solve(&residual(&weights));
-            weights.iter_mut().zip(&columns).for_each(|(weight, column)| *weight -= column.dot(&correction));
-            let room = room(&scaled, most, &weights);
-            // What balances the residual exactly is smaller than residual/singular.
-            if !(room >= LEAST_ROOM && residual(&weights).norm() * steepest <= 0.5 * singular * room) {
-                return Err(room.min(0.0));
-            }
-            least = least.min(room);
+        let grasp = Grasp::new(&scaled, self.load.max_normal_force.map(|most| most / self.unit));
+        let (grasp, wanted) = (grasp.ok_or(f64::NEG_INFINITY)?, self.wanted(R_HO));
+        let carried = std::mem::take(&mut self.carried);
+        if carried.len() == wanted.len()
+            && let Ok((weights, room)) = grasp.check(carried, &wanted)
+            && room > DWINDLED * self.solved
+        {
+            self.carried = weights;
+            return Ok(room);
         }
-        Ok(least)
+        let solve = |wanted: &Vector6<f64>| socp::best_weights_within(&scaled, grasp.most, wanted);
+        let solved: Option<Vec<_>> = wanted.iter().map(solve).collect();
+        let (weights, room) = grasp.check(solved.ok_or(f64::NEG_INFINITY)?, &wanted)?;
+        (self.carried, self.solved) = (weights, room);
+        Ok(room)
     }
 
     /// The wrenches that the contacts must give, over the unit.
@@ -94,17 +93,51 @@ impl EdgeHold {
     }
 }
 
-impl Edges {
-    /// The same with weights over a unit (N).
-    fn over(&self, unit: f64) -> Self {
-        let efforts = self.efforts.iter().map(|effort| effort * unit).collect();
-        Self { columns: self.columns.clone(), efforts }
+/// Contacts with what is worked out once for all that they must hold.
+struct Grasp<'e> {
+    contacts: &'e [Edges],
+    most: Option<f64>,
+    columns: Vec<&'e Vector6<f64>>,
+    factor: Cholesky<f64, nalgebra::U6>,
+    /// A lower bound of the columns' smallest singular value.
+    singular: f64,
+    /// How fast a sum of weights, or an effort, grows with the length of a change of the weights.
+    steepest: f64,
+}
+
+impl<'e> Grasp<'e> {
+    fn new(contacts: &'e [Edges], most: Option<f64>) -> Option<Self> {
+        let columns: Vec<&Vector6<f64>> = contacts.iter().flat_map(|contact| &contact.columns).collect();
+        let gram: Matrix6<f64> = columns.iter().map(|column| *column * column.transpose()).sum();
+        let factor = Cholesky::new(gram)?;
+        let singular = 1.0 / factor.inverse().norm().sqrt();
+        let steepest = 1.0 + contacts.iter().map(Edges::steepest).fold(0.0, f64::max);
+        Some(Self { contacts, most, columns, factor, singular, steepest })
     }
 
-    /// How fast a sum of weights, or an effort, grows with the length of a change of the weights.
-    fn steepest(&self) -> f64 {
-        let sum = (self.columns.len() as f64).sqrt();
-        self.efforts.iter().map(|effort| effort.norm()).fold(sum, f64::max)
+    /// Brings weights to exactly the wanted wrenches, up to rounding, by the smallest changes; they and the
+    /// least room of all, `Err` where that is too little.
+    fn check(&self, mut all: Vec<Vec<f64>>, wanted: &[Vector6<f64>]) -> Result<(Vec<Vec<f64>>, f64), f64> {
+        let mut least = f64::INFINITY;
+        for (weights, wanted) in all.iter_mut().zip(wanted) {
+            if weights.len() != self.columns.len() {
+                return Err(f64::NEG_INFINITY);
+            }
+            let residual = |weights: &[f64]| -> Vector6<f64> {
+                let each = self.columns.iter().zip(weights);
+                each.map(|(column, x)| *column * *x).sum::<Vector6<f64>>() - wanted
+            };
+            let correction = self.factor.solve(&residual(weights));
+            weights.iter_mut().zip(&self.columns).for_each(|(x, column)| *x -= column.dot(&correction));
+            let room = room(self.contacts, self.most, weights);
+            // What balances the residual exactly is smaller than residual/singular.
+            let off = residual(weights).norm() * self.steepest;
+            if !(room >= LEAST_ROOM && off <= 0.5 * self.singular * room) {
+                return Err(room.min(0.0));
+            }
+            least = least.min(room);
+        }
+        Ok((all, least))
     }
 }
 
@@ -129,6 +162,7 @@ fn room(contacts: &[Edges], most: Option<f64>, weights: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::DVector;
     use regrasp_api::tangents;
 
     /// Contacts round the equator of a ball of 30 mm, at friction 0.5, with eight edges each; behind each a
@@ -161,7 +195,7 @@ mod tests {
             disturbance_torque: 0.0,
             max_normal_force,
         };
-        let hold = EdgeHold::new(&load, Vec3::new(0.0, 0.0, -9.81 * mass), 0.03).unwrap();
+        let mut hold = EdgeHold::new(&load, Vec3::new(0.0, 0.0, -9.81 * mass), 0.03).unwrap();
         hold.prove(&contacts(lever), &Rotation::identity())
     }
 
@@ -174,6 +208,24 @@ mod tests {
         // The same by a bound of the normal force.
         assert!(held(0.98 * most, 1e-3, Some(10.0)).is_ok());
         assert!(held(1.01 * most, 1e-3, Some(10.0)).is_err());
+    }
+
+    #[test]
+    fn carried_weights_are_checked_at_each_grasp() {
+        let load = HoldLoad {
+            weight: true,
+            friction_factor: 1.0,
+            disturbance_force: 0.5,
+            disturbance_torque: 0.0,
+            max_normal_force: None,
+        };
+        let mut hold = EdgeHold::new(&load, Vec3::new(0.0, 0.0, -9.81), 0.03).unwrap();
+        let level = Rotation::identity();
+        let first = hold.prove(&contacts(0.1), &level).unwrap();
+        assert!(hold.prove(&contacts(0.1), &level).is_ok_and(|room| (room - first).abs() < 1e-6));
+        // The joints of the next grasp have a lever ten times as long: what was carried is too much for them.
+        assert!(hold.prove(&contacts(1.0), &level).is_err());
+        assert!(hold.prove(&contacts(0.1), &level).is_ok());
     }
 
     #[test]

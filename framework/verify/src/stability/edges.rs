@@ -2,11 +2,12 @@
 
 use super::force::Contact;
 use crate::touch::Touch;
+use nalgebra::{DVector, Vector6};
 use regrasp_api::{Cone, ConeEdge, Vec3, tangents};
 use regrasp_plan::{ConeRecord, EdgeRecord};
 
-/// The force (O) and the torque about the inward normal of each edge of a contact's cone at unit normal force,
-/// with a share of the friction.
+/// The force (O) and the torque about the inward normal of each edge of a contact's cone at unit normal
+/// force, with a share of the friction.
 pub(super) fn exerted(touch: &Touch, cone: &Cone<'_>, share: f64) -> Vec<(Vec3, f64)> {
     let n = -touch.n_O;
     let [t1, t2] = tangents(&n);
@@ -51,5 +52,26 @@ pub(super) fn cone(record: &ConeRecord) -> Cone<'static> {
     match record {
         ConeRecord::Elliptic(cone) => cone.cone(),
         ConeRecord::Polyhedral(edges) => Cone::Polyhedral(edges.iter().map(edge).collect()),
+    }
+}
+
+/// One contact: the wrenches of its cone's edges at unit normal force, and what each takes of each joint's
+/// effort, of its limit (1/N).
+pub(super) struct Edges {
+    pub(super) columns: Vec<Vector6<f64>>,
+    pub(super) efforts: Vec<DVector<f64>>,
+}
+
+impl Edges {
+    /// The same with weights over a unit (N).
+    pub(super) fn over(&self, unit: f64) -> Self {
+        let efforts = self.efforts.iter().map(|effort| effort * unit).collect();
+        Self { columns: self.columns.clone(), efforts }
+    }
+
+    /// How fast a sum of weights, or an effort, grows with the length of a change of the weights.
+    pub(super) fn steepest(&self) -> f64 {
+        let sum = (self.columns.len() as f64).sqrt();
+        self.efforts.iter().map(|effort| effort.norm()).fold(sum, f64::max)
     }
 }

@@ -1,6 +1,6 @@
 //! The best internal force of a grasp, found by an interior-point solver.
 
-use super::edge_hold::Edges;
+use super::edges::Edges;
 use super::force::{Contact, Force, Forces};
 use super::held::Held;
 use clarabel::algebra::CscMatrix;

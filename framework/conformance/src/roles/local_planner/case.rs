@@ -4,12 +4,12 @@ use super::places::{
     around, at_rest, beside_a_pin, clasp, closed, on_ball, on_directions, outside, ring, slack, somewhere,
     turned, two_soft_ones,
 };
-use crate::calls::{context, random};
+use crate::calls::random;
 use crate::fixtures::{Bench, to_hand};
-use crate::reference::{Closure, RejectionSampler, closure};
+use crate::reference::{Closure, closure};
 use regrasp_api::{
-    ClosedChainSampler, Configuration, Contact, FingerIndex, FingerJoints, FingerSet, Hand, PerFinger, Pose,
-    PoseRequest, Primitive, Random, Rotation, Slot, SurfaceParam, Target, TipRule, Vec3,
+    Configuration, Contact, FingerIndex, FingerJoints, FingerSet, Hand, PerFinger, Pose, Random, Slot,
+    SurfaceParam, Target, TipRule, Vec3,
 };
 use std::sync::OnceLock;
 
@@ -221,9 +221,12 @@ fn regrasps() -> Vec<Case> {
     let (free, walled) = (Bench::free_sphere(), Bench::walled_sphere());
     let [from, to] = around(-1.0).map(|directions| on_ball(free, directions));
     cases.push(regrasp(free, from.clone(), &to, 0, None));
+    let (held, resting) = (ring(free), at_rest(free, &ring(free), 0));
+    cases.push(regrasp(free, held.clone(), &resting, 0, Some("letting go")));
+    cases.push(regrasp(free, resting, &held, 0, Some("setting down")));
     let resting = at_rest(free, &from, 0);
-    cases.push(regrasp(free, from.clone(), &resting, 0, Some("letting go")));
-    cases.push(regrasp(free, resting, &to, 0, Some("setting down")));
+    cases.push(regrasp(free, from.clone(), &resting, 0, None));
+    cases.push(regrasp(free, resting, &to, 0, None));
     cases.extend([Bench::pinned_palm(), Bench::pinned_scene()].into_iter().filter_map(past_a_pin));
     // Between ball and wall, and with a finger that the grasp needs.
     let [from, to] = around(1.0).map(|directions| on_ball(walled, directions));
@@ -243,7 +246,7 @@ fn regrasps() -> Vec<Case> {
         .map(|second| on_ball(free, [[1.0, 0.1, -0.2], second, [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]));
     cases.push(regrasp(free, past[0].clone(), &past[1], 1, None));
     for side in [1.0, -1.0] {
-        let [from, to] = [-0.2 * side, 0.75 * side]
+        let [from, to] = [-0.5 * side, 1.1 * side]
             .map(|z| on_ball(free, [[1.0, 0.1, -0.2], [0.2, 0.9, z], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]));
         cases.push(regrasp(free, from, &to, 1, Some("far")));
     }
@@ -254,7 +257,7 @@ fn regrasps() -> Vec<Case> {
 /// The first finger from one side of a pin to the other, the tip far above it: its links cannot pass.
 fn past_a_pin(bench: &'static Bench) -> Option<Case> {
     let [from, to] = [1.0, -1.0].map(|side| {
-        let first = [0.35, 0.75 * side, 0.56];
+        let first = [0.6, 0.7 * side, 0.39];
         on_directions(bench, [first, [0.1, 0.98, -0.2], [-1.0, 0.0, 0.0], [0.1, -0.98, -0.2]])
     });
     let (from, to) = (from?, to?);
@@ -273,8 +276,7 @@ fn over_an_edge() -> Vec<Case> {
     let p_HF = to_hand(&from.X_HO, &contact.tip_center(bar.radius()));
     let Some(joints) = bar.world.hand.inverse(finger, &p_HF, &from.joints[finger]) else { return Vec::new() };
     (to.contacts[finger], to.joints[finger]) = (Some(contact), joints);
-    let clear = Some("over an edge");
-    vec![regrasp(bar, from.clone(), &to, 1, clear), regrasp(bar, to, &from, 1, clear)]
+    vec![regrasp(bar, from.clone(), &to, 1, None), regrasp(bar, to, &from, 1, None)]
 }
 
 /// One finger to a contact 6 mm from its own, the others holding, the end free of collision; `None` if this
