@@ -134,7 +134,6 @@ impl SurfaceParam for Mistaken {
             // The direction is taken for a velocity.
             "speed-for-direction" => self.right.walk(from, direction_O, distance * direction_O.norm()),
             "keeps-its-normal" => Contact { n_O: from.n_O, ..straight },
-            "keeps-its-facet" => Contact { facet: from.facet, ..straight },
             "stops-at-edges" => {
                 let stays = |s: f64| self.right.walk(from, direction_O, s * distance).n_O == from.n_O;
                 let part = (0..=16).rev().map(|k| f64::from(k) / 16.0).find(|s| stays(*s));
@@ -180,7 +179,6 @@ fn caught() {
             ("hinted-facet-alone", "project-ignores-hint"),
             ("speed-for-direction", "walk"),
             ("keeps-its-normal", "walk"),
-            ("keeps-its-facet", "walk"),
             ("stops-at-edges", "walk"),
             ("projected-chord", "walk"),
             ("every-edge-is-sharp", "edge-distance"),

@@ -8,8 +8,8 @@ use crate::calls::random;
 use crate::fixtures::{Bench, to_hand};
 use crate::reference::{Closure, closure};
 use regrasp_api::{
-    Configuration, Contact, FingerIndex, FingerJoints, FingerSet, Hand, PerFinger, Pose, Random, Slot,
-    SurfaceParam, Target, TipRule, Vec3,
+    Configuration, Contact, FingerIndex, FingerJoints, FingerSet, Hand, Pose, Random, Slot, SurfaceParam,
+    Target, TipRule, Vec3,
 };
 use std::sync::OnceLock;
 

@@ -5,11 +5,11 @@ mod spread;
 
 use crate::fixtures::{Bench, to_object};
 use crate::law::{Always, Law, Subject, context, counted_once, pure, random};
-use crate::reference::{RejectionSampler, closest_on_facet, closest_on_mesh};
+use crate::reference::{RejectionSampler, closest_on_mesh};
 use crate::report::{Fault, Finding, broken, ensure};
 use regrasp_api::{
-    Build, CallError, ClosedChainSampler, Configuration, Contact, Context, FingerIndex, FingerSet, Hand,
-    Pose, PoseRequest, Reason, Slot, angle_between,
+    Build, CallError, ClosedChainSampler, Configuration, Context, FingerIndex, FingerSet, Hand, Pose,
+    PoseRequest, Reason, Slot, angle_between,
 };
 
 pub(crate) const LAWS: &[Law] = &[
@@ -166,17 +166,6 @@ fn closed(subject: &Subject<'_>) -> Finding {
         ensure((length - 1.0).abs() <= 1e-9, || format!("the orientation has length {length:.9}"))?;
         for finger in q.holding().iter() {
             let tip = bench.world.hand.tip_center(finger, &q.joints[finger]);
-            let mesh = &bench.world.object.mesh;
-            let held = |c: &Contact| {
-                (c.facet as usize) < mesh.facets().len()
-                    && (closest_on_facet(mesh, c.facet, &c.p_OC) - c.p_OC).norm() <= 1e-7
-            };
-            ensure(q.contacts[finger].as_ref().is_none_or(held), || {
-                format!(
-                    "the facet of finger {} does not hold its contact: {:?}",
-                    finger.0, q.contacts[finger]
-                )
-            })?;
             let gap = (q.contact_tip_center(finger, bench.radius()).unwrap_or(tip) - tip).norm();
             ensure(gap <= CLOSED, || format!("finger {} is {gap:e} m off its contact", finger.0))?;
             let off = closest_on_mesh(&bench.world.object.mesh, &to_object(&q.X_HO, &tip)).distance

@@ -1,7 +1,7 @@
 //! Laws of shortest paths.
 
 use super::ground::{Ground, on_each};
-use super::point::{is_contact, names_its_facet};
+use super::point::is_contact;
 use crate::law::{Subject, context, counted_once};
 use crate::reference::FacetSurface;
 use crate::report::{Fault, Finding, ensure};
@@ -53,13 +53,11 @@ pub(super) fn endpoints(subject: &Subject<'_>) -> Finding {
 
 /// Another point of the facet that holds a contact.
 fn beside(ground: &Ground, contact: &Contact) -> Contact {
-    let corners = ground.object.mesh.corners(contact.facet);
-    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-    Contact {
-        p_OC: contact.p_OC.lerp(&middle, 0.3),
-        n_O: ground.object.mesh.normal(contact.facet),
-        ..*contact
-    }
+    let mesh = &ground.object.mesh;
+    let facet = ground.closest(&contact.p_OC).facet;
+    let [a, b, c] = mesh.corners(facet);
+    let p_OC = contact.p_OC.lerp(&((a + b + c) / 3.0), 0.3);
+    ground.surface.project(&(p_OC + mesh.normal(facet) * 1e-3), None).contact
 }
 
 /// A path between the same facets is another one.
@@ -89,7 +87,6 @@ pub(super) fn on_surface(subject: &Subject<'_>) -> Finding {
         for waypoint in path.waypoints.get(1..inner).unwrap_or_default() {
             let off = ground.closest(&waypoint.contact.p_OC).distance;
             ensure(off.abs() <= 1e-7, || format!("a waypoint {off:e} m off the surface: {waypoint:?}"))?;
-            names_its_facet(ground, &waypoint.contact)?;
             if convex {
                 is_contact(ground, &waypoint.contact, 1e-7)?;
             }

@@ -2,23 +2,13 @@
 
 use super::ground::{EXACT, Ground, on_each};
 use crate::law::{Subject, random};
-use crate::reference::closest_on_facet;
 use crate::report::{Finding, ensure};
 use regrasp_api::{Contact, Primitive, Vec3};
-
-/// The facet that a contact names holds its point: walks and projections go on from there.
-pub(super) fn names_its_facet(ground: &Ground, contact: &Contact) -> Finding {
-    let mesh = &ground.object.mesh;
-    let known = (contact.facet as usize) < mesh.facets().len();
-    let off = || (closest_on_facet(mesh, contact.facet, &contact.p_OC) - contact.p_OC).norm();
-    ensure(known && off() <= 1e-7, || format!("the facet does not hold the point: {contact:?}"))
-}
 
 /// The contact lies on the surface, and its normal is a unit vector that leads straight away from it.
 pub(super) fn is_contact(ground: &Ground, contact: &Contact, exact: f64) -> Finding {
     let off = ground.closest(&contact.p_OC).distance;
     ensure(off.abs() <= exact, || format!("a contact {off:e} m off the surface: {contact:?}"))?;
-    names_its_facet(ground, contact)?;
     let length = contact.n_O.norm();
     ensure((length - 1.0).abs() <= 1e-9, || format!("a normal of length {length}: {contact:?}"))?;
     // Beside a concave edge another facet is closer.
@@ -104,7 +94,6 @@ pub(super) fn project_exact(subject: &Subject<'_>) -> Finding {
             let p_OC = found.contact.p_OC;
             ensure(((p_OF - p_OC).norm() - truth.distance.abs()).abs() <= EXACT, text)?;
             ensure(ground.closest(&p_OC).distance.abs() <= EXACT, text)?;
-            names_its_facet(ground, &found.contact)?;
             if truth.distance > 1e-4 {
                 let error = found.contact.n_O - (p_OF - p_OC).normalize();
                 ensure(error.norm() <= 1e-6, text)?;
