@@ -54,9 +54,9 @@ impl EdgeHold {
         self.load.friction_factor
     }
 
-    /// The room with which the contacts are proved to hold the load on the object in this orientation, by the
-    /// carried weights, else (or where their room has dwindled) by the solver's; `Err` gives what could not be
-    /// proved.
+    /// The room with which the contacts are proved to hold the load on the object in this orientation, by
+    /// the carried weights, else (or where their room has dwindled) by the solver's; `Err` gives what could
+    /// not be proved.
     pub(super) fn prove(&mut self, contacts: &[Edges], R_HO: &Rotation) -> Result<f64, f64> {
         let scaled: Vec<Edges> = contacts.iter().map(|contact| contact.over(self.unit)).collect();
         let grasp = Grasp::new(&scaled, self.load.max_normal_force.map(|most| most / self.unit));
