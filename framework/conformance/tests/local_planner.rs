@@ -216,10 +216,11 @@ impl Liar {
                 let end = path.states.len().saturating_sub(1).max(1);
                 path.states[1..end].iter_mut().for_each(|q| q.X_HO.translation.vector.y += 1e-12);
             }
-            Lie::StraightThrough if last > 8 => {
-                let (a, b) = (path.states[2].joints, path.states[last - 2].joints);
-                for i in 3..last - 2 {
-                    let s = (i - 2) as f64 / (last - 4) as f64;
+            // Lifted, and then straight to where it is to come down.
+            Lie::StraightThrough if last > 24 => {
+                let (a, b) = (path.states[8].joints, path.states[last - 8].joints);
+                for i in 9..last - 8 {
+                    let s = (i - 8) as f64 / (last - 16) as f64;
                     for (finger, joints) in a.iter() {
                         path.states[i].joints[finger] = joints.interpolate(&b[finger], s);
                     }

@@ -39,7 +39,7 @@ pub fn slide_along(
             }
         }
         let all = q.joints.fingers().collect();
-        let grasp = task.grasp(&q, q.holding());
+        let grasp = task.transfer_grasp(&q, q.holding());
         let free = closed && task.clearance.configuration_free(&q, all, true).is_ok();
         if !free || !task.stability.test(&grasp, &mut Hint::default(), context)?.is_stable() {
             let stop = Some(context.reject(Slot::TransferPlanner, Reason::Collision));

@@ -258,7 +258,7 @@ fn regrasps() -> Vec<Case> {
 fn past_a_pin(bench: &'static Bench) -> Option<Case> {
     let [from, to] = [1.0, -1.0].map(|side| {
         let first = [0.6, 0.7 * side, 0.39];
-        on_directions(bench, [first, [0.1, 0.98, -0.2], [-1.0, 0.0, 0.0], [0.1, -0.98, -0.2]])
+        on_directions(bench, [first, [0.0, 1.0, 0.1], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]])
     });
     let (from, to) = (from?, to?);
     let free =

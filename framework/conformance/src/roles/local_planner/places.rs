@@ -104,7 +104,7 @@ pub(super) fn at_rest(bench: &Bench, q: &Configuration, finger: u8) -> Configura
 
 /// The ball to one side, so that all fingers lean there and the links of the first stand beside the pin.
 pub(super) fn beside_a_pin(bench: &Bench) -> Option<Configuration> {
-    let directions = [[0.95, 0.0, 0.3], [0.1, 0.98, -0.2], [-1.0, 0.0, 0.0], [0.1, -0.98, -0.2]];
+    let directions = [[0.95, 0.0, 0.3], [0.0, 1.0, 0.1], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]];
     let contact = |finger: FingerIndex| {
         let u = Vec3::from(directions[finger.index()]).normalize();
         Some(bench.surface.project(&(u * 0.05), None).contact)
