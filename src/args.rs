@@ -66,10 +66,10 @@ impl Command {
             Self::Plan(args) => args.json,
             Self::Verify(args) => args.json,
             Self::Compare(args) => args.json,
-            Self::Grasps(args) => args.json,
+            Self::Grasps(args) => args.work.json,
             Self::Roadmap(args) => args.json,
-            Self::Atlas(args) => args.json,
-            Self::Suite(args) => args.json,
+            Self::Atlas(args) => args.work.json,
+            Self::Suite(args) => args.work.json,
             Self::Replay(args) => args.json,
             Self::Hand(args) => args.json,
             Self::Plugins(args) => args.json,
@@ -153,8 +153,8 @@ pub struct PlanArgs {
     #[arg(long)]
     pub view_graph: bool,
     /// Hold the calls of plugins against the laws of their roles; the first breach ends the run and names
-    /// plugin, law and call. The run takes up to five times as long. A program built for debugging looks at a
-    /// share of the calls unasked.
+    /// plugin, law and call. The run takes one and a half to three times as long. A program built for
+    /// debugging looks at a share of the calls unasked.
     #[arg(long)]
     pub audit: bool,
     /// Audit, and write what broke a law to this file: the call with its input, and the whole problem.

@@ -27,18 +27,18 @@ pub fn run(args: &AtlasArgs) -> Result<(), Failure> {
     let files = Files::of(&args.output);
     files.check(args)?;
     let registry = Registry::linked().map_err(Failure::refused)?;
-    let watch = Watch::start(args.time_limit);
+    let watch = Watch::start(args.work.time_limit);
     let journal =
-        Journal::open(&files.journal, &wish, &hands, args.overwrite.force).map_err(Failure::refused)?;
+        Journal::open(&files.journal, &wish, &hands, args.work.overwrite.force).map_err(Failure::refused)?;
     let known: Vec<usize> = journal.cells().iter().map(|cell| cell.number).collect();
     let mut bar = Bar::new(journal);
-    let how = (usize::from(args.threads), &watch as &dyn Stop, &watch as _);
+    let how = (usize::from(args.work.threads), &watch as &dyn Stop, &watch as _);
     let ended = explore(&wish, &hands, &known, &registry, how, &mut bar);
     let journal = bar.finish();
     let (ended, cells) = (ended.map_err(Failure::refused)?, journal.cells());
     let atlas = Atlas { wish: &wish, hands: &hands, summary: Summary::of(&cells), cells };
     atlas.write(&files)?;
-    if args.json {
+    if args.work.json {
         say(&atlas.json())?;
     } else {
         say(&text(&atlas.cells, &atlas.summary, &files.page))?;
@@ -138,6 +138,6 @@ impl Files {
         let inputs: Vec<PathBuf> = args.hands.iter().map(PathBuf::from).collect();
         let all = [&self.page, &self.json, &self.cells, &self.attempts, &self.journal];
         let wished: Vec<(&Path, Kind)> = all.map(|path| (path.as_path(), Kind::Atlas)).to_vec();
-        outputs::check(&inputs, &wished, args.overwrite)
+        outputs::check(&inputs, &wished, args.work.overwrite)
     }
 }

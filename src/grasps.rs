@@ -26,7 +26,7 @@ pub fn run(args: &GraspsArgs) -> Result<(), Failure> {
     let mut inputs = inputs::of_scenario(&args.scenario);
     inputs.extend(args.choices.libraries.load.iter().cloned());
     let registry = plugins::registry(&args.choices.libraries)?;
-    let watch = Watch::start(args.time_limit);
+    let watch = Watch::start(args.work.time_limit);
     let job = Job { args, registry: &registry, watch: &watch, inputs };
     match &args.objects {
         None => job.one(&output, None),
@@ -59,11 +59,11 @@ impl Job<'_> {
             source: &source,
             ending: &ending,
             seconds: began.elapsed().as_secs_f64(),
-            threads: self.args.threads,
+            threads: self.args.work.threads,
             resumed,
         };
         let written = self.save(output, &report, journal)?;
-        report.tell(self.args.json, written.as_deref())?;
+        report.tell(self.args.work.json, written.as_deref())?;
         self.ending(&report, output, written.as_deref())
     }
 
@@ -73,7 +73,7 @@ impl Job<'_> {
         let wished: [(&Path, Kind); 3] =
             [(output.path(), Kind::Grasps), (&partial, Kind::Grasps), (&part, Kind::BegunGrasps)];
         let count = if output.is_special() { 1 } else { wished.len() };
-        outputs::check(inputs, &wished[..count], self.args.overwrite)
+        outputs::check(inputs, &wished[..count], self.args.work.overwrite)
     }
 
     fn scenario(&self, mesh: Option<&Path>) -> Result<Scenario, Failure> {
@@ -103,13 +103,13 @@ impl Job<'_> {
     fn search(&self, source: &GraspSource<'_>, output: &Output) -> Result<(Ending, Journal, u64), Failure> {
         let identity = output::identity(source);
         let path = output.journal();
-        let opened = Journal::open(&path, &identity, source.layout(), self.args.overwrite.force);
+        let opened = Journal::open(&path, &identity, source.layout(), self.args.work.overwrite.force);
         let mut journal = opened.map_err(Failure::refused)?;
         let mut search = Search::new(source);
         journal.resume(&mut search).map_err(Failure::refused)?;
         let resumed = search.grasps();
         let bar = Bar::new(self.args.count as u64, resumed);
-        let found = collect(&mut search, usize::from(self.args.threads), self.watch, &bar, &mut journal);
+        let found = collect(&mut search, usize::from(self.args.work.threads), self.watch, &bar, &mut journal);
         bar.finish();
         Ok((found.map_err(Failure::refused)?, journal, resumed))
     }
@@ -127,7 +127,7 @@ impl Job<'_> {
         }
         let written = match ending.grasps {
             0 => Ok(None),
-            _ => output.write(&path, report, &journal, self.args.overwrite).map(|()| Some(path)),
+            _ => output.write(&path, report, &journal, self.args.work.overwrite).map(|()| Some(path)),
         };
         // What was stopped from outside may go on; where nothing could be written, nothing is lost.
         let is_over = written.is_ok() && !matches!(ending.stopped, Stopped::By(_));

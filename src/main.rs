@@ -43,6 +43,7 @@ mod verify;
 mod view;
 mod watch;
 mod watchdog;
+mod work;
 
 use args::{Arguments, Command};
 use clap::Parser;

@@ -28,9 +28,9 @@ pub fn run(args: &SuiteArgs) -> Result<(), Failure> {
     let files = Files::new(folder, args)?;
     let registry = Registry::linked().map_err(Failure::refused)?;
     let scenarios = scenarios(&protocol, &sources, &registry).map_err(Failure::refused)?;
-    let opened = journal(files.part(), &protocol, &scenarios, &way(args), args.overwrite.force);
+    let opened = journal(files.part(), &protocol, &scenarios, &way(args), args.work.overwrite.force);
     let (part, known) = opened.map_err(Failure::refused)?;
-    let watch = Watch::start(args.time_limit);
+    let watch = Watch::start(args.work.time_limit);
     let all = protocol.series.iter().map(|series| problems(series).len()).sum();
     let bar = Bar::new(all, known.len());
     let state = Mutex::new((part, None));
@@ -48,7 +48,7 @@ pub fn run(args: &SuiteArgs) -> Result<(), Failure> {
         }
     };
     let options = Options {
-        threads: usize::from(args.threads),
+        threads: usize::from(args.work.threads),
         stop: &watch,
         clock: &watch,
         judge: replayed::judge(args),
@@ -65,12 +65,12 @@ pub fn run(args: &SuiteArgs) -> Result<(), Failure> {
     if is_whole {
         files.write(&json(&protocol, &outcomes, &trials), &markdown(name, &protocol, &outcomes))?;
     }
-    match args.json {
+    match args.work.json {
         true => say(&json(&protocol, &outcomes, &trials))?,
         false => say(&text(name, &protocol, &outcomes))?,
     }
     match is_whole {
-        true if args.json => Ok(()),
+        true if args.work.json => Ok(()),
         true => say(&format!("\nlike for like, and what is chosen: {}\n", files.summary().display())),
         false => Err(ending(&watch, (trials.len(), all), &files)),
     }

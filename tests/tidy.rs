@@ -25,7 +25,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("regrasp-view", &["regrasp-api", "regrasp-plan", "regrasp-world"]),
     ("regrasp-audit", &["regrasp-api"]),
     ("regrasp-example-plugins", &["regrasp-api"]),
-    ("regrasp-conformance", &["regrasp-api", "regrasp-audit", "regrasp-world"]),
+    ("regrasp-conformance", &["regrasp-api", "regrasp-audit", "regrasp-planner", "regrasp-world"]),
     ("regrasp-export", &["regrasp-api", "regrasp-physics", "regrasp-plan", "regrasp-world"]),
     (
         "regrasp-grasps",

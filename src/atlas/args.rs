@@ -1,8 +1,8 @@
 //! What `regrasp atlas` takes.
 
 use super::sizes::sizes;
-use crate::numbers::{seconds, whole};
-use crate::outputs::OverwriteArgs;
+use crate::numbers::whole;
+use crate::work::WorkArgs;
 use regrasp::atlas::{Shape, Wish};
 use std::path::PathBuf;
 
@@ -72,18 +72,8 @@ pub struct AtlasArgs {
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true,
           value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub seed: u64,
-    /// Stop after this many seconds; the same command goes on from there.
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
-    pub time_limit: Option<f64>,
-    /// Compute with this many threads, 1 to 256; the atlas is the same.
-    #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true,
-          value_parser = whole::<u16, 1, 256>)]
-    pub threads: u16,
     #[command(flatten)]
-    pub overwrite: OverwriteArgs,
-    /// Print one JSON object instead of text.
-    #[arg(long)]
-    pub json: bool,
+    pub work: WorkArgs,
 }
 
 impl AtlasArgs {

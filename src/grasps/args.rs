@@ -1,8 +1,8 @@
 //! What `regrasp grasps` takes.
 
 use crate::args::ChoiceArgs;
-use crate::numbers::{seconds, whole};
-use crate::outputs::OverwriteArgs;
+use crate::numbers::whole;
+use crate::work::WorkArgs;
 use std::path::PathBuf;
 
 /// Find many distinct, verified grasps of a hand and an object.
@@ -62,18 +62,8 @@ pub struct GraspsArgs {
     pub seed: u64,
     #[command(flatten)]
     pub choices: ChoiceArgs,
-    /// Stop after this many seconds.
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
-    pub time_limit: Option<f64>,
-    /// Compute with this many threads, 1 to 256; the grasps are the same.
-    #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true,
-          value_parser = whole::<u16, 1, 256>)]
-    pub threads: u16,
     #[command(flatten)]
-    pub overwrite: OverwriteArgs,
-    /// Print one JSON object instead of text.
-    #[arg(long)]
-    pub json: bool,
+    pub work: WorkArgs,
 }
 
 fn spread(text: &str) -> Result<f64, &'static str> {

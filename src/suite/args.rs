@@ -1,7 +1,6 @@
 //! What `regrasp suite` takes.
 
-use crate::numbers::{seconds, whole};
-use crate::outputs::OverwriteArgs;
+use crate::work::WorkArgs;
 use std::path::PathBuf;
 
 /// Run the problems of a published paper, and set the results beside the published ones.
@@ -30,16 +29,6 @@ pub struct SuiteArgs {
     /// `tests/outside/mujoco_replay.py`.
     #[arg(long)]
     pub keep_plans: bool,
-    /// Stop after this many seconds.
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
-    pub time_limit: Option<f64>,
-    /// Compute with this many threads, 1 to 256; all but the times is the same.
-    #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true,
-          value_parser = whole::<u16, 1, 256>)]
-    pub threads: u16,
     #[command(flatten)]
-    pub overwrite: OverwriteArgs,
-    /// Print one JSON object instead of text.
-    #[arg(long)]
-    pub json: bool,
+    pub work: WorkArgs,
 }

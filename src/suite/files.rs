@@ -28,11 +28,11 @@ impl Files {
         };
         made(folder)?;
         let wished = [&results, &summary, &part].map(|path| (path.as_path(), Kind::Suite));
-        outputs::check(&[], &wished, args.overwrite)?;
+        outputs::check(&[], &wished, args.work.overwrite)?;
         if args.keep_plans {
             made(&plans)?;
         }
-        Ok(Self { results, summary, plans, part, overwrite: args.overwrite })
+        Ok(Self { results, summary, plans, part, overwrite: args.work.overwrite })
     }
 
     pub fn summary(&self) -> &Path {

@@ -1,6 +1,8 @@
 //! The replay of a plan, where the simulation is built in.
 
 use super::SuiteArgs;
+#[cfg(feature = "rapier")]
+use crate::Failure;
 use regrasp::suite::Judge;
 
 /// Who replays; nobody where that was not wished, or the program has no simulation.
@@ -18,7 +20,7 @@ pub fn judge(args: &SuiteArgs) -> Option<Judge<'static>> {
 /// As `regrasp replay` does by default.
 #[cfg(feature = "rapier")]
 fn replayed(plan: &regrasp::plan::Plan) -> Result<regrasp::suite::Replayed, regrasp::suite::Unreplayable> {
-    let why = |failure: crate::Failure| regrasp::suite::Unreplayable(failure.message().to_owned());
+    let why = |failure: Failure| regrasp::suite::Unreplayable(failure.message().to_owned());
     let report = crate::replay::by_default(plan).map_err(why)?;
     let last = report.stages.last();
     Ok(regrasp::suite::Replayed {

@@ -3,8 +3,10 @@
 #![allow(missing_docs)]
 
 mod contact_models;
+mod dents;
 mod examples;
 mod local_planners;
+mod pyramids;
 mod replays;
 mod samplers;
 mod stability_tests;

@@ -93,7 +93,7 @@ fn split_mix(state: &mut u64) -> u64 {
 }
 
 /// The generator behind `rand`'s traits: `rand_core::Rng` comes with this one.
-#[cfg(feature = "rand_core")]
+#[cfg(any(feature = "rand_core", test))]
 impl rand_core::TryRng for Random {
     type Error = std::convert::Infallible;
 
@@ -149,7 +149,6 @@ mod tests {
         assert!(seen.iter().all(|&count| (850..1150).contains(&count)), "{seen:?}");
     }
 
-    #[cfg(feature = "rand_core")]
     #[test]
     fn rands_traits_draw_the_same_words() {
         use rand_core::Rng;

@@ -4,6 +4,7 @@ use crate::laws::Broken;
 use regrasp_api::{CallError, ObjectModel, Slot};
 use serde_json::Value;
 use std::cell::Cell;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// How much of a run is looked at.
@@ -99,6 +100,7 @@ pub struct Auditor<'a> {
     plugins: Vec<(Slot, String)>,
     breach: Mutex<Option<Breach>>,
     depth: Depth,
+    looks: AtomicU64,
 }
 
 impl<'a> Auditor<'a> {
@@ -114,6 +116,7 @@ impl<'a> Auditor<'a> {
             plugins: plugins.into_iter().collect(),
             breach: Mutex::new(None),
             depth: Depth::Full,
+            looks: AtomicU64::new(0),
         }
     }
 
@@ -126,12 +129,20 @@ impl<'a> Auditor<'a> {
     /// Whether a call is looked at, by what it is given.
     pub(crate) fn looks_at(&self, call: Key) -> bool {
         let (short, long) = self.depth.periods();
-        let (bits, period) = match call {
-            Key::Always => return true,
-            Key::Short(bits) => (bits, short),
-            Key::Long(bits) => (bits, long),
+        let looks = match call {
+            Key::Always => true,
+            Key::Short(bits) => (bits >> 40).is_multiple_of(short),
+            Key::Long(bits) => (bits >> 40).is_multiple_of(long),
         };
-        (bits >> 40).is_multiple_of(period)
+        if looks {
+            self.looks.fetch_add(1, Ordering::Relaxed);
+        }
+        looks
+    }
+
+    /// How many calls were looked at.
+    pub fn looks(&self) -> u64 {
+        self.looks.load(Ordering::Relaxed)
     }
 
     /// The first breach, if there was one.

@@ -1,8 +1,8 @@
 //! What a plugin was called with, as JSON: SI units, frames as in the plan file.
 
 use regrasp_api::{
-    Cone, Configuration, Contact, Context, FingerSet, Grasp, PerFinger, Pose, PoseRequest, Random, Target,
-    Vec3,
+    Cone, Configuration, Contact, Context, FingerSet, Grasp, GraspContact, JointBound, PerFinger, Pose,
+    PoseRequest, Random, Target, Vec3,
 };
 use serde_json::{Value, json};
 
@@ -46,15 +46,23 @@ fn cone(cone: &Cone<'_>) -> Value {
 }
 
 pub(crate) fn grasp(grasp: &Grasp<'_>) -> Value {
-    let contact = |contact: &regrasp_api::GraspContact<'_>| {
-        json!({
+    let joint = |joint: &JointBound| {
+        let column = joint.column_O;
+        [column.x, column.y, column.z, joint.spin, joint.limit]
+    };
+    let contact = |(i, contact): (usize, &GraspContact<'_>)| {
+        let mut value = json!({
             "finger": contact.finger.0,
             "point_O": vector(&contact.p_OC),
             "normal_O": vector(&contact.n_O),
             "cone": cone(&contact.cone),
-        })
+        });
+        if let Some(efforts) = grasp.efforts(i) {
+            value["efforts"] = efforts.joints().iter().map(|bound| json!(joint(bound))).collect();
+        }
+        value
     };
-    let contacts: Vec<_> = grasp.contacts().iter().map(contact).collect();
+    let contacts: Vec<_> = grasp.contacts().iter().enumerate().map(contact).collect();
     json!({ "contacts": contacts, "gravity_O": vector(&grasp.g_O) })
 }
 

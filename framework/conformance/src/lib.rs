@@ -18,6 +18,7 @@
 mod calls;
 mod entry;
 pub mod fixtures;
+mod in_a_run;
 mod law;
 mod leaves;
 pub mod reference;
@@ -26,6 +27,7 @@ mod report;
 mod roles;
 mod silence;
 
+pub use in_a_run::{Trial, assert_registered_keep_the_laws_in_a_run, audit_in_a_run};
 pub use replay::{ReplayError, assert_replay_keeps, replay};
 pub use report::{Check, Outcome, Report};
 pub use silence::{assert_silent, registered_are_silent};
@@ -84,20 +86,38 @@ pub fn assert_registered_conform() -> String {
     reports.iter().map(|report| report.summary() + "\n").collect()
 }
 
-/// The two tests of a plugin crate: every registered plugin passes every check, and none prints anything.
+/// The tests of a plugin crate: every registered plugin passes every check, keeps the laws where the planner
+/// calls it, and prints nothing.
+///
+/// What they say goes straight to standard error: a test that passes shows nothing of what it prints. A call
+/// that breaks a law in a run is kept in the target folder.
 #[macro_export]
 macro_rules! registered_plugins_conform {
     () => {
         #[test]
         fn registered_plugins_conform() {
             let summary = $crate::assert_registered_conform();
-            // Straight to standard error: a test that passes shows nothing of what it prints.
             let _ = std::io::Write::write_all(&mut std::io::stderr(), summary.as_bytes());
         }
+
+        $crate::registered_plugins_keep_the_laws_in_a_run!($crate::Demands::default());
 
         #[test]
         fn registered_plugins_print_nothing() {
             $crate::registered_are_silent(concat!(module_path!(), "::registered_plugins_print_nothing"));
+        }
+    };
+}
+
+/// The test that plans with every registered plugin under audit; part of [`registered_plugins_conform`].
+#[macro_export]
+macro_rules! registered_plugins_keep_the_laws_in_a_run {
+    ($demands:expr) => {
+        #[test]
+        fn registered_plugins_keep_the_laws_in_a_run() {
+            let folder = option_env!("CARGO_TARGET_TMPDIR");
+            let summary = $crate::assert_registered_keep_the_laws_in_a_run(&$demands, folder);
+            let _ = std::io::Write::write_all(&mut std::io::stderr(), summary.as_bytes());
         }
     };
 }

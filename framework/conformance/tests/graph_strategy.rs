@@ -5,6 +5,7 @@ mod support;
 
 use regrasp_api::*;
 use regrasp_conformance::reference::Interleaving;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What a liar does wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,12 +17,15 @@ enum Lie {
     GivesUp,
     TriesAgain,
     CountsTwice,
+    JoinsNothing,
+    WantsMoreEachTime,
     OnlyAtHome,
 }
 
 struct Liar {
     lie: Lie,
     home: std::thread::ThreadId,
+    asked: AtomicUsize,
 }
 
 impl GraphStrategy for Liar {
@@ -43,6 +47,9 @@ impl GraphStrategy for Liar {
             Lie::TriesAgain if !graph.joined() && samples < most && context.random.unit() < 0.8 => {
                 Ok(Action::Connect(graph.start(), graph.goals()[0], EdgeKind::Grasp))
             }
+            Lie::JoinsNothing if !graph.joined() => {
+                Ok(if samples < most { Action::Explore(Link::None) } else { Action::Stop })
+            }
             Lie::OnlyAtHome if std::thread::current().id() != self.home => Ok(Action::Stop),
             Lie::Nothing | Lie::CountsTwice => Interleaving.next(graph, context),
             _ => {
@@ -50,6 +57,15 @@ impl GraphStrategy for Liar {
                 Interleaving.next(graph, &mut own)
             }
         }
+    }
+
+    fn policy(&self) -> SearchPolicy {
+        let more = match self.lie {
+            Lie::WantsMoreEachTime => self.asked.fetch_add(1, Ordering::Relaxed),
+            _ => 0,
+        };
+        let policy = SearchPolicy::default();
+        SearchPolicy { goal_grasps: policy.goal_grasps + more, ..policy }
     }
 }
 
@@ -64,7 +80,11 @@ macro_rules! liar {
             check: check_settings::<NoSettings>,
             build: Build::GraphStrategy(|json, _| {
                 NoSettings::from_json(json)?;
-                Ok(Box::new(Liar { lie: $lie, home: std::thread::current().id() }))
+                Ok(Box::new(Liar {
+                    lie: $lie,
+                    home: std::thread::current().id(),
+                    asked: AtomicUsize::new(0),
+                }))
             }),
         }
     };
@@ -79,6 +99,8 @@ fn each_liar_fails_its_check_and_no_other() {
         (liar!(Lie::GivesUp), "strategy-goes-on"),
         (liar!(Lie::TriesAgain), "strategy-not-futile"),
         (liar!(Lie::CountsTwice), "strategy-counted"),
+        (liar!(Lie::JoinsNothing), "strategy-solves"),
+        (liar!(Lie::WantsMoreEachTime), "strategy-policy"),
         (liar!(Lie::OnlyAtHome), "strategy-pure"),
     ];
     support::judge(Slot::GraphStrategy, &liar!(Lie::Nothing), &liars, &[]);

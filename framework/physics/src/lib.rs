@@ -50,7 +50,8 @@ pub use force::{Across, ContactForce, Friction};
 pub use grasp_forces::{grasp_forces, grasp_forces_at};
 pub use hold::Held;
 pub use holding::{
-    Answer, Balanced, Bearing, Bearings, Exerted, Forces, HeldLoad, Press, Smallest, smallest_share,
+    Answer, Balanced, Bearing, Bearings, Edged, EdgesAnswer, EdgesBalanced, Exerted, Forces, HeldLoad, Press,
+    Smallest, Weights, smallest_share,
 };
 #[cfg(feature = "rapier")]
 pub use pace::Pace;

@@ -10,8 +10,8 @@ use regrasp_run::NeverStops;
 use regrasp_samplers as _;
 use regrasp_stability_tests as _;
 use regrasp_suite::{
-    Files, Options, Outcome, Problems, Protocol, Published, Replayed, Series, Told, Trial, World, journal,
-    run, scenarios,
+    Files, Options, Outcome, Problems, Protocol, Published, Replayed, Series, Told, Trial, Unreplayable,
+    World, journal, run, scenarios,
 };
 use regrasp_surfaces as _;
 use std::ops::ControlFlow;
@@ -79,6 +79,21 @@ fn trials_are_the_same_on_two_threads_and_counted() {
     assert_eq!(outcome.chain.map(|chain| chain.mean), Some(3.0), "{one:?}");
     assert_eq!(outcome.revolutions.map(|turns| turns.mean), Some(0.5));
     assert_eq!(outcome.arrived, Some(3));
+}
+
+#[test]
+fn a_plan_that_cannot_be_replayed_ends_nothing_and_says_why() {
+    let why = Unreplayable("points stay where they are set down".into());
+    let refuses = |_: &Plan| Err(why.clone());
+    let options =
+        Options { threads: 1, stop: &NeverStops, clock: &Still, judge: Some(&refuses), told: &more };
+    let registry = Registry::linked().unwrap();
+    let of = scenarios(&protocol(), &Files::BuiltIn(&[]), &registry).unwrap();
+    let all = run(&protocol(), &of, &registry, Vec::new(), &options).unwrap();
+    assert_eq!(all.len(), 4);
+    let attempt = &all[0].attempts[0];
+    assert!(attempt.solved && attempt.replayed.is_none());
+    assert_eq!(attempt.unreplayable, Some(why));
 }
 
 #[test]

@@ -163,7 +163,7 @@ impl Walk<'_> {
         }
         seen.stability.sample(leg, state, 0, &frames.X_HO.rotation, touches);
         if let Some(cones) = &mut seen.cones {
-            cones.state(leg, state, &frames.X_HO.rotation, touches);
+            cones.state((leg, state), hand, frames, touches);
         }
         if let Some(Some(holding)) = &mut seen.holding {
             holding.sample((leg, state, 0), hand, frames, touches);
@@ -203,7 +203,7 @@ impl Walk<'_> {
             let touches = seen.contacts.sample(leg, state, sample, frames);
             seen.stability.sample(leg, state, sample, &frames.X_HO.rotation, &touches);
             if let Some(cones) = seen.cones.as_mut().filter(|_| stated) {
-                cones.state(leg, state + 1, &frames.X_HO.rotation, &touches);
+                cones.state((leg, state + 1), hand, frames, &touches);
             }
             if let Some(Some(holding)) = &mut seen.holding {
                 holding.sample((leg, state, sample), hand, frames, &touches);

@@ -1,12 +1,15 @@
 //! `stability-test/holding`: forces within the joints' efforts hold the object's weight and disturbances at a
 //! share of the friction.
 
+use crate::contacts::is_round;
 use regrasp_api::{
     Assessment, Build, BuildError, CallError, Certificate, Context, Criterion, Entry, FingerIndex, Grasp,
     Hint, HoldLoad, ObjectModel, Settings, SettingsError, Slot, Stability, StabilityTest, Vec3,
     check_settings,
 };
-use regrasp_physics::{Balanced, Bearings, HeldLoad, Press, smallest_share};
+use regrasp_physics::{
+    Balanced, Bearings, ContactForce, Edged, EdgesBalanced, HeldLoad, Press, smallest_share,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -58,7 +61,8 @@ impl Settings for HoldingSettings {}
 /// weight and every disturbance of a set.
 ///
 /// The efforts come with the grasp ([`Grasp::efforts`]); a contact that carries none is bounded by
-/// `max_normal_force` alone. Elliptic cones are taken exactly. For the weight alone, and with each of the 24
+/// `max_normal_force` alone. Elliptic cones are taken exactly, and so are polyhedral ones; where a grasp has
+/// both, elliptic ones count as edges on them. For the weight alone, and with each of the 24
 /// wrenches that [`regrasp_api::Load`] describes, some forces must balance: then, cones and efforts being
 /// convex, everything between is balanced too. Forces are found by Newton's method to the analytic centre of
 /// those that balance, in the manner of Boyd & Wegbreit, "Fast computation of optimal contact forces", T-RO
@@ -94,53 +98,132 @@ impl Holding {
         Ok(Self { settings, load })
     }
 
-    fn bearings(&self, grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Result<Bearings, CallError> {
-        // The planner hands over less friction than there is, but all of the torsional friction.
+    /// The parts of friction and torsional friction that count: the planner hands over less friction than
+    /// there is, but all of the torsional friction.
+    fn parts(&self) -> (f64, f64) {
         let part = 1.0 - self.settings.reserve;
-        let torsion_part = part * self.settings.friction_factor;
-        let bearings = self.load.bearings(grasp, lifted, (part, torsion_part));
-        bearings.ok_or_else(|| CallError::Unsupported {
-            plugin: ID.into(),
-            reason: "polyhedral cones; choose a contact model with elliptic ones, or `linearised`".into(),
-        })
+        (part, part * self.settings.friction_factor)
     }
 
-    fn judge(
-        &self,
-        grasp: &Grasp<'_>,
-        lifted: Option<FingerIndex>,
-        hint: &mut Hint,
-    ) -> Result<(Stability, Balanced), CallError> {
-        let bearings = self.bearings(grasp, lifted)?;
-        let answer = self.load.held(&bearings, &grasp.g_O, 1.0, hint);
-        let stability = match answer.balanced {
-            Balanced::Yes(_) if answer.holds => Stability::Stable,
-            Balanced::Unknown if bearings.len() > 2 => Stability::Undecided,
-            _ => Stability::Unstable,
-        };
-        Ok((stability, answer.balanced))
-    }
-
-    fn certificate(&self, bearings: &Bearings, balanced: &Balanced, center_O: &Vec3) -> Certificate {
-        match balanced {
-            Balanced::Yes(forces) => {
-                let exerted = || bearings.iter().zip(forces).map(|(bearing, x)| bearing.force(x));
-                Certificate::InternalForce {
-                    forces_O: exerted().map(|exerted| exerted.force).collect(),
-                    // About the inward normal.
-                    torsions: exerted().map(|exerted| -exerted.spin).collect(),
-                }
-            }
-            Balanced::No(twist) => {
-                let unit = twist / twist.norm();
-                let (a, w_O) =
-                    (unit.fixed_rows::<3>(0).into_owned(), unit.fixed_rows::<3>(3) / self.load.length);
-                // From the centre of mass to the contacts' centroid.
-                Certificate::SeparatingTwist { v_O: a + w_O.cross(&(center_O - self.load.p_OCm)), w_O }
-            }
-            Balanced::Unknown => Certificate::None,
+    /// The contacts, as they are looked at.
+    fn held(&self, grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Held {
+        let round =
+            is_round(grasp, lifted).then(|| self.load.bearings(grasp, lifted, self.parts())).flatten();
+        match round {
+            Some(bearings) => Held::Round(bearings),
+            None => Held::Edged(self.load.edged(grasp, lifted, self.parts())),
         }
     }
+
+    fn judge(&self, grasp: &Grasp<'_>, lifted: Option<FingerIndex>, hint: &mut Hint) -> Judged {
+        let held = self.held(grasp, lifted);
+        let (found, holds) = match &held {
+            Held::Round(bearings) => {
+                let answer = self.load.held(bearings, &grasp.g_O, 1.0, hint);
+                (Found::Round(answer.balanced), answer.holds)
+            }
+            Held::Edged(contacts) => {
+                let answer = self.load.held_by_edges(contacts, &grasp.g_O, 1.0);
+                (Found::Edged(answer.balanced), answer.holds)
+            }
+        };
+        let stability = match found {
+            Found::Round(Balanced::Yes(_)) | Found::Edged(EdgesBalanced::Yes(_)) if holds => {
+                Stability::Stable
+            }
+            Found::Round(Balanced::Unknown) | Found::Edged(EdgesBalanced::Unknown) if held.len() > 2 => {
+                Stability::Undecided
+            }
+            _ => Stability::Unstable,
+        };
+        Judged { stability, found, held }
+    }
+
+    fn certificate(&self, judged: &Judged, center_O: &Vec3) -> Certificate {
+        let (exerted, twist): (Vec<ContactForce>, _) = match (&judged.held, &judged.found) {
+            (Held::Round(bearings), Found::Round(Balanced::Yes(forces))) => {
+                (bearings.iter().zip(forces).map(|(bearing, x)| bearing.force(x)).collect(), None)
+            }
+            (Held::Edged(contacts), Found::Edged(EdgesBalanced::Yes(weights))) => {
+                (contacts.iter().zip(weights).map(|(contact, x)| contact.force(x)).collect(), None)
+            }
+            (_, Found::Round(Balanced::No(twist)) | Found::Edged(EdgesBalanced::No(twist))) => {
+                (Vec::new(), Some(twist))
+            }
+            _ => return Certificate::None,
+        };
+        let Some(twist) = twist else {
+            return Certificate::InternalForce {
+                forces_O: exerted.iter().map(|exerted| exerted.force).collect(),
+                // About the inward normal.
+                torsions: exerted.iter().map(|exerted| -exerted.spin).collect(),
+            };
+        };
+        let unit = twist / twist.norm();
+        let (a, w_O) = (unit.fixed_rows::<3>(0).into_owned(), unit.fixed_rows::<3>(3) / self.load.length);
+        // From the centre of mass to the contacts' centroid.
+        Certificate::SeparatingTwist { v_O: a + w_O.cross(&(center_O - self.load.p_OCm)), w_O }
+    }
+
+    /// The smallest share of the friction that holds the weight; `None` where none up to [`LARGEST`] does.
+    fn smallest(&self, held: &Held, grasp: &Grasp<'_>) -> Option<f64> {
+        let wanted = self.load.wanted(&grasp.g_O);
+        if let Held::Round(bearings) = held {
+            return smallest_share(bearings, &wanted, 1.0).map(|smallest| smallest.share);
+        }
+        let calm = HeldLoad { disturbance: (0.0, 0.0), ..self.load };
+        let (part, torsion_part) = self.parts();
+        let holds = |share: f64| {
+            let contacts = calm.edged(grasp, None, (share * part, share * torsion_part));
+            calm.held_by_edges(&contacts, &grasp.g_O, 1.0).holds
+        };
+        let (mut low, mut high) = (0.0, 1.0);
+        while !holds(high) {
+            (low, high) = (high, 2.0 * high);
+            if high > LARGEST {
+                return None;
+            }
+        }
+        while high - low > NEAR * high && high > NEAR {
+            let middle = 0.5 * (low + high);
+            if holds(middle) { high = middle } else { low = middle }
+        }
+        Some(high)
+    }
+}
+
+/// The largest share of the friction that is looked for, and how near the bounds of the smallest are.
+const LARGEST: f64 = 8.0;
+const NEAR: f64 = 0.02;
+
+/// Contacts, all with elliptic cones or by their edges.
+#[allow(clippy::large_enum_variant)] // it lives on the stack of an inner loop, which allocates nothing
+enum Held {
+    Round(Bearings),
+    Edged(Vec<Edged>),
+}
+
+impl Held {
+    fn len(&self) -> usize {
+        match self {
+            Self::Round(bearings) => bearings.len(),
+            Self::Edged(contacts) => contacts.len(),
+        }
+    }
+}
+
+/// What a verdict stands on.
+#[allow(clippy::large_enum_variant)]
+enum Found {
+    Round(Balanced),
+    Edged(EdgesBalanced),
+}
+
+/// A verdict on a grasp, what it stands on, and the contacts.
+struct Judged {
+    stability: Stability,
+    found: Found,
+    held: Held,
 }
 
 fn centroid(grasp: &Grasp<'_>) -> Vec3 {
@@ -156,7 +239,7 @@ impl StabilityTest for Holding {
         context: &mut Context<'_>,
     ) -> Result<Stability, CallError> {
         context.count_call(Slot::StabilityTest);
-        Ok(self.judge(grasp, None, hint)?.0)
+        Ok(self.judge(grasp, None, hint).stability)
     }
 
     fn assess(
@@ -166,17 +249,15 @@ impl StabilityTest for Holding {
         _center_O: Option<Vec3>,
         _context: &mut Context<'_>,
     ) -> Result<Assessment, CallError> {
-        let (stability, balanced) = self.judge(grasp, None, &mut Hint::default())?;
-        let bearings = self.bearings(grasp, None)?;
-        let share =
-            smallest_share(&bearings, &self.load.wanted(&grasp.g_O), 1.0).map(|smallest| smallest.share);
-        let lower = share.map_or(f64::NEG_INFINITY, |share| 1.0 - share);
+        let judged = self.judge(grasp, None, &mut Hint::default());
+        let stability = judged.stability;
+        let lower = self.smallest(&judged.held, grasp).map_or(f64::NEG_INFINITY, |share| 1.0 - share);
         let (margin_lower, margin_upper) = if stability.is_stable() {
             (lower.max(0.0), 1.0)
         } else {
             (lower.clamp(-1e3, 0.0), lower.clamp(-1e3, 1.0))
         };
-        let certificate = self.certificate(&bearings, &balanced, &centroid(grasp));
+        let certificate = self.certificate(&judged, &centroid(grasp));
         Ok(Assessment { stability, margin_lower, margin_upper, certificate })
     }
 
@@ -204,7 +285,7 @@ impl StabilityTest for Holding {
         context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
         context.count_call(Slot::StabilityTest);
-        Ok(self.judge(grasp, Some(finger), &mut Hint::default())?.0.is_stable())
+        Ok(self.judge(grasp, Some(finger), &mut Hint::default()).stability.is_stable())
     }
 }
 

@@ -178,3 +178,109 @@ fn disturbances_ask_for_more_than_the_weight() {
     }
     assert!(both > 10 && calm_alone > 10, "{both} {calm_alone}");
 }
+
+/// The grasp with each cone, or every second one, replaced by `count` edges on it.
+fn edged(grasp: &Grasp<'_>, count: usize, all: bool) -> Grasp<'static> {
+    let mut edged = Grasp::new(grasp.g_O);
+    for (i, contact) in grasp.contacts().iter().enumerate() {
+        let Cone::Elliptic { mu, .. } = contact.cone else { panic!("the cases are round") };
+        let edge = |k: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / count as f64).sin_cos();
+            ConeEdge { tangential: [mu * cos, mu * sin], torsion: 0.0 }
+        };
+        let edges = (0..count).map(edge).collect::<Vec<_>>();
+        let is_round = !all && i % 2 == 1;
+        let cone = if is_round { Cone::Elliptic { mu, gamma: 0.0 } } else { Cone::Polyhedral(edges.into()) };
+        let contact = GraspContact { finger: contact.finger, p_OC: contact.p_OC, n_O: contact.n_O, cone };
+        edged.push_bounded(contact, *grasp.efforts(i).expect("the cases have joints"));
+    }
+    edged
+}
+
+/// The cone of m edges on a round one lies between it and the round one of cos(π/m) times the friction.
+#[test]
+fn edges_hold_what_lies_between_two_round_cones() {
+    let shaken = HoldingSettings { disturbance_force: 0.05, disturbance_torque: 5e-4, ..Default::default() };
+    for settings in [HoldingSettings::default(), shaken] {
+        let (test, mut random) = (test_with(settings), Random::from_key(35, 0, 0, 0));
+        let (mut held, mut lost, mut undecided) = (0, 0, 0);
+        for k in 0..240 {
+            let case = case(&mut random, 3 + k % 3);
+            let (count, all) = ([4, 8, 16][k % 3], k % 4 != 0);
+            // In a grasp of both kinds the round cones are taken by edges on them, 24.
+            let inner = (std::f64::consts::PI / count as f64).cos();
+            let [outer, middle, inner] = [1.0, 1.0, inner * 0.99].map(|part| grasp(&case, part, 1.0, 1.0));
+            let middle = edged(&middle, count, all);
+            let verdicts = [&outer, &middle, &inner].map(|grasp| verdict(&test, grasp));
+            assert!(!verdicts[1].is_stable() || verdicts[0].is_stable(), "{k}: {verdicts:?}");
+            assert!(!verdicts[2].is_stable() || verdicts[1].is_stable(), "{k}: {verdicts:?}");
+            held += u32::from(verdicts[1].is_stable());
+            lost += u32::from(verdicts[1] == Stability::Unstable);
+            undecided += u32::from(verdicts[1] == Stability::Undecided);
+        }
+        assert!(held > 15 && lost > 60 && undecided < 12, "{held} held, {lost} lost, {undecided} undecided");
+    }
+}
+
+#[test]
+fn what_edges_hold_is_proved_by_weights_within_cones_and_efforts() {
+    let test = test_with(HoldingSettings::default());
+    let mut random = Random::from_key(36, 0, 0, 0);
+    let mut found = [0; 2];
+    for k in 0..150 {
+        let case = case(&mut random, 3 + k % 3);
+        let grasp = edged(&grasp(&case, 1.0, 1.0, 1.0), 8, true);
+        let assessed = with_context(|context| test.assess(&grasp, None, None, context));
+        assert_eq!(assessed.stability, verdict(&test, &grasp));
+        assert!(assessed.margin_lower <= assessed.margin_upper, "{assessed:?}");
+        match assessed.certificate {
+            Certificate::InternalForce { forces_O, .. } => {
+                found[0] += 1;
+                assert!(assessed.stability.is_stable() && assessed.margin_lower >= 0.0);
+                let mut sum = (case.g_O * 0.1, Vec3::zeros());
+                for (force, (n_O, mu, bounds)) in forces_O.iter().zip(&case.contacts) {
+                    // Within the octagon of each edge's friction: its sides are cos(π/8) from the middle.
+                    let normal = -n_O.dot(force);
+                    let [t1, t2] = tangents(&-n_O);
+                    for side in 0..8 {
+                        let (sin, cos) = (std::f64::consts::FRAC_PI_4 * (f64::from(side) + 0.5)).sin_cos();
+                        let along = force.dot(&(t1 * cos + t2 * sin));
+                        let most = KEPT * mu * normal * std::f64::consts::FRAC_PI_8.cos();
+                        assert!(along <= most * (1.0 + 1e-9), "{k}: {along} {most}");
+                    }
+                    let efforts = bounds.efforts_of(force, 0.0);
+                    assert!(efforts.iter().zip(bounds.joints()).all(|(e, j)| e.abs() <= KEPT * j.limit));
+                    sum.0 += force;
+                    sum.1 += (n_O * 0.03).cross(force);
+                }
+                assert!(sum.0.norm() < 1e-7 && sum.1.norm() < 1e-8, "{k}: {sum:?}");
+            }
+            Certificate::SeparatingTwist { v_O, w_O } => {
+                found[1] += 1;
+                assert_eq!(assessed.stability, Stability::Unstable);
+                let centroid =
+                    case.contacts.iter().map(|c| c.0 * 0.03).sum::<Vec3>() / case.contacts.len() as f64;
+                let at = |p: Vec3| v_O + w_O.cross(&(p - centroid));
+                let work = -(case.g_O * 0.1).dot(&at(Vec3::zeros()));
+                let most: f64 = case.contacts.iter().map(|c| most_power_of_edges(c, &at(c.0 * 0.03))).sum();
+                assert!(work > most * (1.0 - 1e-6), "{k}: {work} {most}");
+            }
+            Certificate::None => assert_eq!(assessed.stability, Stability::Undecided),
+        }
+    }
+    assert!(found[0] > 15 && found[1] > 20, "{found:?}");
+}
+
+/// The most power of one contact's eight edges on the velocity of its point, from below: each edge as far as
+/// the efforts let it go.
+fn most_power_of_edges((n_O, mu, bounds): &(Vec3, f64, EffortBounds), velocity: &Vec3) -> f64 {
+    let [t1, t2] = tangents(&-n_O);
+    let of_edge = |k: i32| {
+        let (sin, cos) = (std::f64::consts::FRAC_PI_4 * f64::from(k)).sin_cos();
+        let force = -n_O + t1 * (KEPT * mu * cos) + t2 * (KEPT * mu * sin);
+        let efforts = bounds.efforts_of(&force, 0.0);
+        let shares = efforts.iter().zip(bounds.joints()).map(|(e, j)| e.abs() / (KEPT * j.limit));
+        force.dot(velocity) / shares.fold(1e-12, f64::max)
+    };
+    (0..8).map(of_edge).fold(0.0, f64::max)
+}

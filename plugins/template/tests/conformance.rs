@@ -23,6 +23,8 @@ fn plugins_conform() {
     reports.iter().for_each(Report::assert_passes);
 }
 
+regrasp_conformance::registered_plugins_keep_the_laws_in_a_run!(Demands::default());
+
 #[test]
 fn plugins_print_nothing() {
     registered_are_silent(concat!(module_path!(), "::plugins_print_nothing"));

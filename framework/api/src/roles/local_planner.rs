@@ -50,6 +50,12 @@ impl Reached {
 /// with its reason by the local planner itself. Grasp and regrasp planners are all or nothing where it suits
 /// them: then `end` is `from` and `fraction` 0.
 ///
+/// In a regrasp the moving fingertip touches at the ends alone: from its contact it rises, and never falls by
+/// more than a micrometre, until it is as high as the lowest of [`crate::Resolution::lift`] and
+/// [`crate::Resolution::retreat`]; that high it must come between two contacts; and while it touches it does
+/// not slide by more than the tolerance for slip. The same holds backwards in time from the contact at the
+/// end. (The verifier has this law, the kit and an audit have it as `regrasp-lifts`.)
+///
 /// While the object moves, and along a path in GS_n, the grasp must hold as [`Task::transfer_grasp`] gives
 /// it, in a regrasp as [`Task::grasp`] does. How contacts move in a transfer is the fingertips' matter
 /// ([`crate::Hand::fingertip`]): balls roll, points stay.

@@ -6,17 +6,22 @@ mod chain;
 mod cone;
 mod contact;
 mod grasp;
+mod lift;
 mod motion;
 mod slip;
+mod strategy;
 
 pub use chain::{Chain, chain_kept, pose_kept};
 pub use cone::{cone_inside, cone_valid, cone_within_friction, directions, support};
 pub(crate) use contact::is_looked_at;
 pub use contact::{Ground, contact_on_surface, path_kept, projection_kept, walk_kept};
 pub use grasp::{assessment_kept, certificate_kept};
+pub use lift::lift_kept;
 pub use motion::{
     Motion, ends_kept, fraction_kept, reached_kept, refusal_counted, states_kept, step_kept, target_kept,
 };
+
+pub use strategy::vicinity_kept;
 
 /// A law, and how it was broken.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use crate::Audited;
 use crate::auditor::Key;
-use crate::laws::ensure;
+use crate::laws::{self, ensure};
 use regrasp_api::{Action, CallError, Context, GraphStrategy, GraphView, NodeId, SearchPolicy};
 use serde_json::json;
 
@@ -24,10 +24,11 @@ impl GraphStrategy for Audited<'_, dyn GraphStrategy + '_> {
             },
             |_, action, _| {
                 let known = |node: NodeId| (node.0 as usize) < graph.node_count();
+                if let Action::Extend(_, within, _) = action {
+                    laws::vicinity_kept(within)?;
+                }
                 let sound = match *action {
-                    Action::Extend(node, within, _) => {
-                        known(node) && within.radius > 0.0 && within.angle > 0.0
-                    }
+                    Action::Extend(node, ..) => known(node),
                     Action::Connect(a, b, _) => known(a) && known(b) && a != b,
                     Action::ConnectAll(node, _) => known(node),
                     Action::Check(id) => graph.edges().iter().any(|edge| edge.id == id),

@@ -55,6 +55,7 @@ impl LocalPlanner for Audited<'_, dyn LocalPlanner + '_> {
                 laws::ends_kept(&motion)?;
                 laws::target_kept(&motion)?;
                 laws::states_kept(&motion, &mut context.twin())?;
+                laws::lift_kept(&motion)?;
                 let given = given.borrow();
                 laws::ensure("pure", given.as_ref().is_none_or(|given| given.states == path.states), || {
                     "the same call again takes another way".into()

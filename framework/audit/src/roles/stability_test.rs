@@ -4,8 +4,8 @@ use crate::auditor::{Key, bits};
 use crate::laws::{self, Kept, broken, ensure};
 use crate::{Audited, input};
 use regrasp_api::{
-    Assessment, CallError, Cone, Context, Criterion, FingerIndex, FingerSet, Grasp, Hint, Stability,
-    StabilityTest, Vec3,
+    Assessment, CallError, Cone, Context, Criterion, EffortBounds, FingerIndex, FingerSet, Grasp,
+    GraspContact, Hint, Stability, StabilityTest, Vec3,
 };
 use serde_json::json;
 
@@ -25,17 +25,21 @@ fn plain(test: &dyn StabilityTest, grasp: &Grasp<'_>, context: &mut Context<'_>)
 /// The same grasp with more friction; round cones alone.
 fn with_more_friction(grasp: &Grasp<'_>) -> Option<Grasp<'static>> {
     let mut other = Grasp::new(grasp.g_O);
-    for contact in grasp.contacts() {
+    for (i, contact) in grasp.contacts().iter().enumerate() {
         let Cone::Elliptic { mu, gamma } = contact.cone else { return None };
         let cone = Cone::Elliptic { mu: MORE * mu, gamma };
-        other.push(regrasp_api::GraspContact {
-            cone,
-            finger: contact.finger,
-            p_OC: contact.p_OC,
-            n_O: contact.n_O,
-        });
+        let (finger, p_OC, n_O) = (contact.finger, contact.p_OC, contact.n_O);
+        put(&mut other, GraspContact { cone, finger, p_OC, n_O }, grasp.efforts(i));
     }
     Some(other)
+}
+
+/// Adds a contact with what the joints behind it can do, where the grasp says that.
+fn put<'a>(grasp: &mut Grasp<'a>, contact: GraspContact<'a>, efforts: Option<&EffortBounds>) {
+    match efforts {
+        Some(efforts) => grasp.push_bounded(contact, *efforts),
+        None => grasp.push(contact),
+    }
 }
 
 /// Laws that relate the verdict to those on other grasps.
@@ -56,7 +60,9 @@ fn verdict_kept(
         })?;
     }
     let mut other = Grasp::new(grasp.g_O);
-    grasp.contacts().iter().rev().for_each(|contact| other.push(contact.clone()));
+    for (i, contact) in grasp.contacts().iter().enumerate().rev() {
+        put(&mut other, contact.clone(), grasp.efforts(i));
+    }
     match plain(test, &other, context) {
         Some(verdict) if !verdict.is_stable() => {
             broken("permutation", format!("stable, and {verdict:?} with the contacts in reverse order"))

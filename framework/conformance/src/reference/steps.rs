@@ -28,13 +28,13 @@ pub(super) fn close(task: &Task<'_>, q: &Configuration, finger: FingerIndex) -> 
     task.hand.inverse(finger, &p_HF, &q.joints[finger]).ok_or(Reason::Reach)
 }
 
-/// What is wrong with a closed configuration.
+/// What is wrong with a closed configuration of an object that moves.
 pub(super) fn fault(
     task: &Task<'_>,
     q: &Configuration,
     context: &mut Context<'_>,
 ) -> Result<Option<Reason>, CallError> {
-    let grasp = task.grasp(q, q.holding());
+    let grasp = task.transfer_grasp(q, q.holding());
     if !task.stability.test(&grasp, &mut Hint::default(), context)?.is_stable() {
         return Ok(Some(Reason::Stability));
     }

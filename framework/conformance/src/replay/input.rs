@@ -2,8 +2,8 @@
 
 use super::{ReplayError, form};
 use regrasp_api::{
-    Cone, ConeEdge, Configuration, Contact, FingerIndex, FingerJoints, FingerSet, Grasp, GraspContact,
-    PerFinger, Pose, Random, Rotation, Vec3,
+    Cone, ConeEdge, Configuration, Contact, EffortBounds, FingerIndex, FingerJoints, FingerSet, Grasp,
+    GraspContact, JointBound, MAX_FINGER_JOINTS, MAX_FINGERS, PerFinger, Pose, Random, Rotation, Vec3,
 };
 use serde_json::Value;
 
@@ -41,6 +41,12 @@ impl<'a> Input<'a> {
         }
     }
 
+    /// A list of at most this many.
+    fn few(self, most: usize) -> Read<Vec<Self>> {
+        let items = self.items()?;
+        if items.len() <= most { Ok(items) } else { self.wrong(&format!("a list of at most {most}")) }
+    }
+
     /// A number; `null` is how JSON writes what is not finite.
     pub fn number(self) -> Read<f64> {
         match self.value {
@@ -65,7 +71,10 @@ impl<'a> Input<'a> {
     }
 
     pub fn finger(self) -> Read<FingerIndex> {
-        u8::try_from(self.count()?).map_or_else(|_| self.wrong("a finger"), |k| Ok(FingerIndex(k)))
+        match u8::try_from(self.count()?) {
+            Ok(k) if usize::from(k) < MAX_FINGERS => Ok(FingerIndex(k)),
+            _ => self.wrong("a finger"),
+        }
     }
 
     pub fn fingers(self) -> Read<FingerSet> {
@@ -97,11 +106,12 @@ impl<'a> Input<'a> {
     }
 
     pub fn joints(self) -> Read<FingerJoints> {
+        self.few(MAX_FINGER_JOINTS)?;
         Ok(FingerJoints::from_slice(&self.numbers()?))
     }
 
     fn per_finger<T: Copy>(self, empty: T, read: impl Fn(Self) -> Read<T>) -> Read<PerFinger<T>> {
-        let items = self.items()?;
+        let items = self.few(MAX_FINGERS)?;
         let mut all = PerFinger::filled(items.len(), empty);
         for (k, item) in items.into_iter().enumerate() {
             all[FingerIndex(k as u8)] = read(item)?;
@@ -138,15 +148,31 @@ impl<'a> Input<'a> {
 
     pub fn grasp(self) -> Read<Grasp<'static>> {
         let mut grasp = Grasp::new(self.get("gravity_O").vector()?);
-        for contact in self.get("contacts").items()? {
-            grasp.push(GraspContact {
-                finger: contact.get("finger").finger()?,
-                p_OC: contact.get("point_O").vector()?,
-                n_O: contact.get("normal_O").vector()?,
-                cone: contact.get("cone").cone()?,
-            });
+        for item in self.get("contacts").few(MAX_FINGERS)? {
+            let contact = GraspContact {
+                finger: item.get("finger").finger()?,
+                p_OC: item.get("point_O").vector()?,
+                n_O: item.get("normal_O").vector()?,
+                cone: item.get("cone").cone()?,
+            };
+            let efforts = item.get("efforts");
+            if efforts.is_null() {
+                grasp.push(contact);
+            } else {
+                grasp.push_bounded(contact, efforts.efforts()?);
+            }
         }
         Ok(grasp)
+    }
+
+    /// What the joints behind a contact can do.
+    fn efforts(self) -> Read<EffortBounds> {
+        let joint = |item: Self| match item.numbers()?[..] {
+            [x, y, z, spin, limit] => Ok(JointBound { column_O: Vec3::new(x, y, z), spin, limit }),
+            _ => item.wrong("a list of five numbers"),
+        };
+        let joints: Read<Vec<_>> = self.few(MAX_FINGER_JOINTS)?.into_iter().map(joint).collect();
+        Ok(EffortBounds::from_joints(joints?))
     }
 
     /// The random stream; any, where the call draws none.

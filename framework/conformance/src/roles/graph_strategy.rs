@@ -3,7 +3,7 @@
 use crate::fixtures::{Bench, Outcome, SquareGraph, Weather};
 use crate::law::{Law, Subject, context, counted_once, pure};
 use crate::report::{Fault, Finding, broken, ensure};
-use regrasp_api::{Action, Build, GraphStrategy, GraphView, Slot};
+use regrasp_api::{Action, Build, GraphStrategy, GraphView, SearchPolicy, Slot, check_schema};
 
 pub(crate) const LAWS: &[Law] = &[
     Law {
@@ -30,6 +30,16 @@ pub(crate) const LAWS: &[Law] = &[
         name: "strategy-not-futile",
         why: "the same attempt again has the same result, for ever",
         check: not_futile,
+    },
+    Law {
+        name: "strategy-solves",
+        why: "nodes that are never joined are no graph, and a path that is never found no plan",
+        check: solves,
+    },
+    Law {
+        name: "strategy-policy",
+        why: "how actions are carried out is asked once a run, and must be the same on any machine",
+        check: policy,
     },
     Law {
         name: "strategy-counted",
@@ -92,13 +102,42 @@ fn queries(subject: &Subject<'_>) -> Finding {
     let strategy = build(subject)?;
     for key in 0..4 {
         let mut graph = SquareGraph::new(Weather { decomposes: 1.0, ..BARREN }, key);
-        graph.join();
+        // Any goal will do.
+        graph.join_with(key as usize % 2);
         let end = run(&*strategy, &mut graph, key, |_, _| Ok(()))?;
         ensure(end == Outcome::Solved, || {
             format!("start and goal are joined, but the run ends with {end:?} and no query")
         })?;
     }
     Ok(())
+}
+
+/// Problems that a strategy is to solve.
+const PROBLEMS: u64 = 8;
+
+fn solves(subject: &Subject<'_>) -> Finding {
+    let (strategy, mut joined) = (build(subject)?, 0);
+    for key in 0..PROBLEMS {
+        let mut graph = SquareGraph::new(FAIR, 50 + key);
+        let end = run(&*strategy, &mut graph, 50 + key, |_, _| Ok(()))?;
+        // That a path is asked for is another law.
+        joined += u64::from(end == Outcome::Solved || graph.joined());
+    }
+    ensure(2 * joined >= PROBLEMS, || {
+        format!("of {PROBLEMS} problems in which every third pair of nodes can be joined it joins {joined}")
+    })
+}
+
+/// Ranges of the policy are in its schema, as those of settings are.
+fn policy(subject: &Subject<'_>) -> Finding {
+    let (strategy, fresh) = (build(subject)?, build(subject)?);
+    let policy = strategy.policy();
+    ensure(policy == strategy.policy() && policy == fresh.policy(), || {
+        format!("it asks for {policy:?} at first, and for {:?} later", strategy.policy())
+    })?;
+    let schema = schemars::schema_for!(SearchPolicy).to_value();
+    let value = serde_json::to_value(policy).map_err(|error| Fault::Broken(error.to_string()))?;
+    check_schema(&value, &schema).map_err(|departure| Fault::Broken(format!("it asks for {departure}")))
 }
 
 fn stops(subject: &Subject<'_>) -> Finding {

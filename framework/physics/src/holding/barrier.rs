@@ -155,7 +155,7 @@ impl Barrier {
 }
 
 /// First and second derivative of -log(1 - u²).
-fn slopes(u: f64) -> (f64, f64) {
+pub(super) fn slopes(u: f64) -> (f64, f64) {
     let inverse = 1.0 / (1.0 - u * u);
     (2.0 * u * inverse, 2.0 * (1.0 + u * u) * inverse * inverse)
 }

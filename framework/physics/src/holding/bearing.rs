@@ -39,9 +39,9 @@ pub struct Press {
 }
 
 /// The normal force (N) to begin with where nothing bounds it, and the most that is ever looked for.
-const UNBOUNDED: (f64, f64) = (10.0, 1e4);
+pub(super) const UNBOUNDED: (f64, f64) = (10.0, 1e4);
 /// A row this small (1/N) bounds nothing that matters.
-const FLAT: f64 = 1e-12;
+pub(super) const FLAT: f64 = 1e-12;
 
 impl Bearing {
     /// Fills a place.

@@ -1,6 +1,7 @@
 //! What a grasp must hold: the object's weight, and every disturbance of a set.
 
 use super::bearing::{Bearing, Press, stacked};
+use super::edged::{Edged, EdgesBalanced, Weights, balance, square, start};
 use super::newton::{Balanced, Forces, Search};
 use crate::force::Friction;
 use nalgebra::{Cholesky, Matrix6, Vector6};
@@ -40,6 +41,15 @@ pub struct Answer {
     pub holds: bool,
 }
 
+/// The answer on one grasp of which some cones are polyhedra.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgesAnswer {
+    /// Weights that hold the weight, or why there are none; see [`Answer::balanced`].
+    pub balanced: EdgesBalanced,
+    /// Whether the grasp holds the weight and every disturbance.
+    pub holds: bool,
+}
+
 /// Contacts of a grasp as bearings, in place.
 pub struct Bearings {
     all: [Bearing; MAX_FINGERS],
@@ -74,6 +84,53 @@ impl HeldLoad {
             bearings.count += 1;
         }
         Some(bearings)
+    }
+
+    /// The contacts of a grasp, but that of `lifted`, whatever their cones, with a part of their friction and
+    /// of their torsional friction.
+    pub fn edged(&self, grasp: &Grasp<'_>, lifted: Option<FingerIndex>, parts: (f64, f64)) -> Vec<Edged> {
+        let held = grasp.contacts().iter().enumerate().filter(|(_, contact)| Some(contact.finger) != lifted);
+        let edged = |(i, contact): (usize, &regrasp_api::GraspContact<'_>)| {
+            let place = (&(contact.p_OC - self.p_OCm), &contact.n_O);
+            let efforts = grasp.efforts(i).copied().unwrap_or_default();
+            Edged::new(place, &contact.cone, parts, &efforts, &self.press, self.length)
+        };
+        held.map(edged).collect()
+    }
+
+    /// Whether contacts with edges hold the load; see [`Self::held`].
+    pub fn held_by_edges(&self, contacts: &[Edged], g_O: &Vec3, factor: f64) -> EdgesAnswer {
+        let no = |balanced| EdgesAnswer { balanced, holds: false };
+        if contacts.len() < 2 || !is_full(square(contacts)) {
+            return no(EdgesBalanced::Unknown);
+        }
+        let wanted = self.wanted(g_O);
+        let balanced = balance(contacts, &start(contacts), &wanted);
+        let EdgesBalanced::Yes(weights) = balanced else { return no(balanced) };
+        match self.lost_by_edges(contacts, &weights, &wanted, factor) {
+            Some(lost) => no(lost),
+            None => EdgesAnswer { balanced: EdgesBalanced::Yes(weights), holds: true },
+        }
+    }
+
+    /// What becomes of the first disturbance that is not resisted.
+    fn lost_by_edges(
+        &self,
+        contacts: &[Edged],
+        weights: &Weights,
+        wanted: &Vector6<f64>,
+        factor: f64,
+    ) -> Option<EdgesBalanced> {
+        let (force, torque) = (self.disturbance.0 * factor, self.disturbance.1 * factor / self.length);
+        if force <= 0.0 && torque <= 0.0 {
+            return None;
+        }
+        let zero = Vec3::zeros();
+        let pushes = icosahedron()
+            .into_iter()
+            .flat_map(|vertex| [stacked(&(vertex * force), &zero), stacked(&zero, &(vertex * torque))]);
+        let mut answers = pushes.map(|push| balance(contacts, weights, &(wanted + push)));
+        answers.find(|answer| !matches!(answer, EdgesBalanced::Yes(_)))
     }
 
     /// The wrench that contacts must give to hold the weight, under gravity `g_O` (m/s²).
@@ -125,6 +182,10 @@ impl HeldLoad {
 fn has_full_rank(bearings: &[Bearing]) -> bool {
     let mut square = Matrix6::zeros();
     bearings.iter().for_each(|bearing| square += bearing.map * bearing.map.transpose());
+    is_full(square)
+}
+
+fn is_full(square: Matrix6<f64>) -> bool {
     Cholesky::new(square).is_some_and(|factor| {
         let pivots = factor.l_dirty().diagonal();
         pivots.min().powi(2) > FLAT * pivots.max().powi(2)

@@ -3,6 +3,7 @@
 
 mod barrier;
 mod bearing;
+mod edged;
 mod ldl;
 mod load;
 mod newton;
@@ -10,7 +11,8 @@ mod share;
 
 pub(crate) use bearing::stacked;
 pub use bearing::{Bearing, Exerted, Press};
-pub use load::{Answer, Bearings, HeldLoad};
+pub use edged::{Edged, EdgesBalanced, Weights};
+pub use load::{Answer, Bearings, EdgesAnswer, HeldLoad};
 pub(crate) use newton::Search;
 pub use newton::{Balanced, Forces};
 pub(crate) use share::share_of;

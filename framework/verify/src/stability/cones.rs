@@ -1,19 +1,24 @@
-//! Closure, or equilibrium, of contacts whose cones the plan records one by one: elliptic ones as they are
-//! where all of a grasp are elliptic, otherwise cones of edges, and elliptic ones by edges inside them.
+//! Closure, equilibrium, or holding within efforts, of contacts whose cones the plan records one by one:
+//! elliptic ones as they are where all of a grasp are elliptic, otherwise cones of edges, and elliptic ones
+//! by edges inside them; holding is always looked at by edges.
 //!
 //! The edges' wrenches span all of space positively, which is closure, exactly if they have rank 6 and some
 //! positive combination of all of them is zero (A. J. Goldman, A. W. Tucker, "Polyhedral convex cones",
 //! 1956). Such a combination is a proof that arithmetic can check, whoever found it.
 
+use super::edge_hold::EdgeHold;
+use super::edges::{Edges, cone, exerted};
 use super::force::{self, Contact};
+use super::held::Row;
 use super::load::LoadCheck;
 use super::{edge_load, socp};
+use crate::hand::Chains;
 use crate::touch::Touch;
-use crate::track::Leg;
+use crate::track::{Frames, Leg};
 use crate::verdict::{Check, Gauge, Side};
-use nalgebra::{Cholesky, Matrix6, Vector6};
-use regrasp_api::{Cone, ConeEdge, MAX_FINGERS, Rotation, Vec3, tangents};
-use regrasp_plan::{Claims, ConeRecord, Criterion, EdgeRecord, Extreme, HoldsAt, Place};
+use nalgebra::{Cholesky, DVector, Matrix6, Vector6};
+use regrasp_api::{Cone, MAX_FINGERS, Rotation, Vec3};
+use regrasp_plan::{Claims, Criterion, Extreme, HoldsAt, Place};
 
 /// The least share of an edge in a proof, the shares of all summing to 1.
 const LEAST_SHARE: f64 = 1e-8;
@@ -39,23 +44,33 @@ pub(crate) struct ConesCheck {
     failures: usize,
     /// What must be held where the plan claims equilibrium, not closure.
     load: Option<LoadCheck>,
+    /// What must be held within the joints' efforts where the plan claims that.
+    hold: Option<EdgeHold>,
 }
 
 impl ConesCheck {
-    /// `None` where the plan records no cones, or claims more than closure or equilibrium; for an object of
-    /// this weight (N, in H).
+    /// `None` where the plan records no cones; for an object of this weight (N, in H).
     pub(crate) fn new(claims: &Claims, weight_H: Vec3) -> Option<Self> {
         let cones = &claims.contact.cones;
         if claims.contact.cone.is_some() || cones.is_empty() {
             return None;
         }
-        let load = match &claims.criterion {
-            Criterion::Closure => None,
-            Criterion::Equilibrium(load) => Some(LoadCheck::new(load, weight_H, claims.margin.length)?),
+        let mut gauge = Gauge::new("stability", "share", Side::Above, LEAST_SHARE);
+        let (mut load, mut hold, length) = (None, None, claims.margin.length);
+        match &claims.criterion {
+            Criterion::Closure => {}
+            Criterion::Equilibrium(claimed) => load = Some(LoadCheck::new(claimed, weight_H, length)?),
+            Criterion::Holding(claimed) => {
+                hold = EdgeHold::new(claimed, weight_H, length);
+                if hold.is_none() {
+                    let note = Some("the claimed criterion has no meaning".into());
+                    gauge.note(f64::NAN, || Place { note, ..Default::default() });
+                }
+            }
             _ => return None,
-        };
+        }
         Some(Self {
-            gauge: Gauge::new("stability", "share", Side::Above, LEAST_SHARE),
+            gauge,
             cones: cones.iter().map(cone).collect(),
             center_O: claims.margin.center_O.into(),
             length: claims.margin.length,
@@ -64,17 +79,19 @@ impl ConesCheck {
             worst: None,
             failures: 0,
             load,
+            hold,
         })
     }
 
-    /// Takes in a state with the object's orientation and the contacts of the fingers that hold there.
+    /// Takes in a state with where everything is and the contacts of the fingers that hold there.
     pub(crate) fn state(
         &mut self,
-        leg: &Leg<'_>,
-        state: usize,
-        R_HO: &Rotation,
+        (leg, state): (&Leg<'_>, usize),
+        hand: &Chains,
+        frames: &Frames,
         touches: &[Option<Touch>; MAX_FINGERS],
     ) {
+        let R_HO = &frames.X_HO.rotation;
         if self.failures >= MOST_FAILURES {
             return;
         }
@@ -84,6 +101,12 @@ impl ConesCheck {
         };
         if self.load.is_some() {
             return self.state_load(leg, state, R_HO, &held);
+        }
+        if let Some(share) = self.hold.as_ref().map(EdgeHold::friction_factor) {
+            let edges = self.edges(&held, share, hand, frames);
+            let found = self.hold.as_mut().map_or(Err(0.0), |hold| hold.prove(&edges, R_HO));
+            self.failures += usize::from(found.is_err());
+            return self.gauge.note(found.unwrap_or_else(|slack| slack), || leg.at(state));
         }
         let found = match self.round(&held) {
             Some(contacts) => self.prove_round(&contacts),
@@ -105,7 +128,13 @@ impl ConesCheck {
     }
 
     /// Whether the contacts hold the claimed load; closure margins do not apply.
-    fn state_load(&mut self, leg: &Leg<'_>, state: usize, R_HO: &Rotation, held: &[(Touch, Cone<'_>)]) {
+    fn state_load(
+        &mut self,
+        leg: &Leg<'_>,
+        state: usize,
+        R_HO: &Rotation,
+        held: &[(usize, Touch, Cone<'_>)],
+    ) {
         let (round, columns) = (self.round(held), self.columns(held));
         let Some(load) = &mut self.load else { return };
         let found = match round {
@@ -116,27 +145,27 @@ impl ConesCheck {
         self.gauge.note(found.unwrap_or_else(|slack| slack), || leg.at(state));
     }
 
-    /// The contacts that hold, with their cones; `None` where one has no cone.
+    /// The fingers that hold, with contacts and cones; `None` where one has no cone.
     fn held(
         &self,
         leg: &Leg<'_>,
         state: usize,
         touches: &[Option<Touch>; MAX_FINGERS],
-    ) -> Option<Vec<(Touch, Cone<'static>)>> {
+    ) -> Option<Vec<(usize, Touch, Cone<'static>)>> {
         let numbers = leg.states[state].record.cones.as_ref()?;
         let holding = touches.iter().enumerate().filter(|&(finger, _)| leg.moving != Some(finger));
         let with_cone = |(finger, touch): (usize, Touch)| {
             let cone = self.cones.get((*numbers.get(finger)?)?)?;
             // Contacts may spin in a transfer, and a spinning contact transmits no torsion.
             let cone = if leg.moving.is_some() { cone.clone() } else { cone.without_torsion() };
-            Some((touch, cone))
+            Some((finger, touch, cone))
         };
         holding.filter_map(|(finger, touch)| Some((finger, (*touch)?))).map(with_cone).collect()
     }
 
     /// The contacts, where all their cones are round.
-    fn round(&self, held: &[(Touch, Cone<'_>)]) -> Option<Vec<Contact>> {
-        let contact = |(touch, cone): &(Touch, Cone<'_>)| {
+    fn round(&self, held: &[(usize, Touch, Cone<'_>)]) -> Option<Vec<Contact>> {
+        let contact = |(_, touch, cone): &(usize, Touch, Cone<'_>)| {
             Contact::new((touch.p_OC - self.center_O) / self.length, -touch.n_O, cone, self.length)
         };
         held.iter().map(contact).collect()
@@ -158,18 +187,39 @@ impl ConesCheck {
     }
 
     /// The wrenches of each contact's edges, torques over the length.
-    fn columns(&self, held: &[(Touch, Cone<'_>)]) -> Vec<Vec<Vector6<f64>>> {
-        let of_contact = |(touch, cone): &(Touch, Cone<'_>)| {
-            let (r, n) = ((touch.p_OC - self.center_O) / self.length, -touch.n_O);
-            let [t1, t2] = tangents(&n);
-            let wrench = |edge: &ConeEdge| {
-                let f = n + t1 * edge.tangential[0] + t2 * edge.tangential[1];
-                let m = r.cross(&f) + n * (edge.torsion / self.length);
-                Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z)
-            };
-            edges(cone, &n).iter().map(wrench).collect()
+    fn columns(&self, held: &[(usize, Touch, Cone<'_>)]) -> Vec<Vec<Vector6<f64>>> {
+        let columns = |(_, touch, cone): &(usize, Touch, Cone<'_>)| {
+            exerted(touch, cone, 1.0).iter().map(|edge| self.wrench(touch, edge)).collect()
         };
-        held.iter().map(of_contact).collect()
+        held.iter().map(columns).collect()
+    }
+
+    /// The wrench of a force and a torque about the inward normal at a contact, torques over the length.
+    fn wrench(&self, touch: &Touch, (f, torsion): &(Vec3, f64)) -> Vector6<f64> {
+        let r = (touch.p_OC - self.center_O) / self.length;
+        let m = r.cross(f) - touch.n_O * (torsion / self.length);
+        Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z)
+    }
+
+    /// Each contact's edges at this share of the friction, with the joints behind it.
+    fn edges(
+        &self,
+        held: &[(usize, Touch, Cone<'_>)],
+        share: f64,
+        hand: &Chains,
+        frames: &Frames,
+    ) -> Vec<Edges> {
+        let contact = |(finger, touch, cone): &(usize, Touch, Cone<'_>)| {
+            let edges = exerted(touch, cone, share);
+            let rows = hand.rows(*finger, frames, &touch.p_OC, &-touch.n_O);
+            let effort = |row: &Row| {
+                let of = |(f, torsion): &(Vec3, f64)| (row.column_O.dot(f) + row.spin * torsion) / row.limit;
+                DVector::from_iterator(edges.len(), edges.iter().map(of))
+            };
+            let columns = edges.iter().map(|edge| self.wrench(touch, edge)).collect();
+            Edges { columns, efforts: rows.iter().map(effort).collect() }
+        };
+        held.iter().map(contact).collect()
     }
 
     /// A proof from the carried shares, else (or where they have dwindled) from the solver's.
@@ -249,45 +299,11 @@ fn prove(columns: &[Vector6<f64>], shares: &[f64]) -> Option<Proof> {
     proved.then_some(Proof { shares, least, singular })
 }
 
-/// The edges of a cone at the inward normal `n`; of an elliptic one, edges on its surface: 48 round it, in
-/// steps of torsion as fine.
-fn edges(cone: &Cone<'_>, n: &Vec3) -> Vec<ConeEdge> {
-    const ROUND: usize = 48;
-    const LEVELS: i32 = 12;
-    let gamma = match cone {
-        Cone::Polyhedral(edges) => return edges.to_vec(),
-        Cone::Elliptic { gamma, .. } => *gamma,
-        Cone::Grained(grain) => grain.gamma,
-    };
-    let [t1, t2] = tangents(n);
-    let contact = Contact::new(Vec3::zeros(), *n, cone, 1.0);
-    // From the unit circle to the largest tangential forces.
-    let rim = |x: f64, y: f64| {
-        let f = contact.as_ref().map_or(Vec3::zeros(), |contact| contact.stretch(&(t1 * x + t2 * y)));
-        [f.dot(&t1), f.dot(&t2)]
-    };
-    let levels = if gamma > 0.0 { -LEVELS..=LEVELS } else { 0..=0 };
-    let level = |level: i32| {
-        let (sin, cos) = (f64::from(level) / f64::from(LEVELS) * std::f64::consts::FRAC_PI_2).sin_cos();
-        (0..ROUND).map(move |k| {
-            let (y, x) = (std::f64::consts::TAU * k as f64 / ROUND as f64).sin_cos();
-            ConeEdge { tangential: rim(cos * x, cos * y), torsion: gamma * sin }
-        })
-    };
-    levels.flat_map(level).collect()
-}
-
-fn cone(record: &ConeRecord) -> Cone<'static> {
-    let edge = |edge: &EdgeRecord| ConeEdge { tangential: edge.tangential, torsion: edge.torsion };
-    match record {
-        ConeRecord::Elliptic(cone) => cone.cone(),
-        ConeRecord::Polyhedral(edges) => Cone::Polyhedral(edges.iter().map(edge).collect()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stability::edges::edges;
+    use regrasp_api::tangents;
 
     /// Contacts round the equator of a unit ball, each with a cone of this grain.
     fn columns(count: usize, mu: [f64; 2]) -> Vec<Vector6<f64>> {

@@ -5,7 +5,9 @@
 //! problems", IEEE T-RA 2000.
 
 mod cones;
+mod edge_hold;
 mod edge_load;
+mod edges;
 mod force;
 mod held;
 mod holding;
@@ -93,7 +95,7 @@ impl StabilityCheck {
         if claims.contact.cone.is_none() {
             gauge.remark(
                 "not independently checked: the plan claims no elliptic cone that all its contacts share, \
-                    and neither closure nor equilibrium by cones of their own",
+                    and records no cones of its contacts",
             );
         } else if cone.is_none() && known && !elsewhere {
             gauge.note(f64::NAN, || Place {

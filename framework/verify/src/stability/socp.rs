@@ -1,5 +1,6 @@
 //! The best internal force of a grasp, found by an interior-point solver.
 
+use super::edges::Edges;
 use super::force::{Contact, Force, Forces};
 use super::held::Held;
 use clarabel::algebra::CscMatrix;
@@ -103,6 +104,41 @@ pub(crate) fn best_weights(columns: &[Vec<Vector6<f64>>], wanted: &Vector6<f64>)
     Some(solution)
 }
 
+/// The same within the joints' efforts: weights λ ≥ t, ± effort + t ≤ 1 for each joint, Σ λ + t ≤ `most` at
+/// each contact where there is one, t ≤ 1.
+pub(super) fn best_weights_within(
+    contacts: &[Edges],
+    most: Option<f64>,
+    wanted: &Vector6<f64>,
+) -> Option<Vec<f64>> {
+    let count: usize = contacts.iter().map(|contact| contact.columns.len()).sum();
+    let mut problem = Problem::new(count + 1);
+    problem.b.extend(wanted.iter());
+    problem.cones.push(SupportedConeT::ZeroConeT(6));
+    let mut first = 0;
+    for contact in contacts {
+        let own = contact.columns.len();
+        for (j, column) in contact.columns.iter().enumerate() {
+            (0..6).for_each(|axis| problem.set(axis, first + j, column[axis]));
+            problem.at_most(0.0, [(first + j, -1.0)]);
+        }
+        for effort in &contact.efforts {
+            for sign in [1.0, -1.0] {
+                problem.at_most(1.0, effort.iter().enumerate().map(|(j, share)| (first + j, sign * share)));
+            }
+        }
+        if let Some(most) = most {
+            problem.at_most(most, (0..own).map(|j| (first + j, 1.0)));
+        }
+        first += own;
+    }
+    problem.at_most(1.0, []);
+    problem.cones.push(SupportedConeT::NonnegativeConeT(problem.b.len() - 6));
+    let mut solution = problem.solve()?;
+    solution.truncate(count);
+    Some(solution)
+}
+
 fn forces_of(solution: &[f64], tangents: &[[Vec3; 2]]) -> (Forces, f64) {
     let mut forces = [Force::default(); MAX_FINGERS];
     for (i, force) in forces.iter_mut().take(tangents.len()).enumerate() {
@@ -139,6 +175,14 @@ impl Problem {
             self.columns.push(column);
             self.values.push(value);
         }
+    }
+
+    /// One more row of the nonnegative cone: the terms and t sum to at most `bound`.
+    fn at_most(&mut self, bound: f64, terms: impl IntoIterator<Item = (usize, f64)>) {
+        let (row, t) = (self.b.len(), self.variables - 1);
+        terms.into_iter().for_each(|(column, value)| self.set(row, column, value));
+        self.set(row, t, 1.0);
+        self.b.push(bound);
     }
 
     /// Rows 0 to 5: the forces' wrench is `wanted`.

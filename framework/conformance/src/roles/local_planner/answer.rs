@@ -2,11 +2,12 @@
 
 use super::case::{Goal, cases};
 use super::{Journey, Kind, build, journeys, on_journeys};
+use crate::fixtures::Bench;
 use crate::law::{Always, Subject, context, counted_once, pure, random};
 use crate::report::{Fault, Finding, ensure};
 use regrasp_api::{
     BodyPair, CallError, Clearance, Configuration, Context, FingerIndex, FingerJoints, FingerSet,
-    PairDistance, Path, Pose, Reason, Slot, Task, TipRule,
+    LocalPlanner, PairDistance, Path, Pose, Reason, Slot, Task, TipRule,
 };
 use regrasp_audit::laws;
 
@@ -87,13 +88,19 @@ pub(super) fn fraction<K: Kind>(subject: &Subject<'_>) -> Finding {
 
 pub(super) fn succeeds<K: Kind>(subject: &Subject<'_>) -> Finding {
     let journeys = journeys::<K>(subject)?;
+    // A simulation may see the object drop, or a fingertip slip, on motions of one kind that roll on paper;
+    // not on most of all.
+    let simulated = |stop: &Reason| matches!(stop, Reason::Stray | Reason::Slip);
+    let all: Vec<_> = journeys.iter().filter(|journey| journey.case.clear.is_some()).collect();
+    let lost = all.iter().filter(|journey| journey.reached.stop.is_some()).count();
+    ensure(2 * lost <= all.len(), || {
+        format!("of {} motions of all kinds with nothing in the way {lost} fail", all.len())
+    })?;
     let mut kinds: Vec<&str> = journeys.iter().filter_map(|journey| journey.case.clear).collect();
     kinds.sort_unstable();
     kinds.dedup();
     for kind in kinds {
         let clear: Vec<_> = journeys.iter().filter(|journey| journey.case.clear == Some(kind)).collect();
-        // A simulation may see the object drop, or a fingertip slip on a motion that rolls on paper.
-        let simulated = |stop: &Reason| matches!(stop, Reason::Stray | Reason::Slip);
         let stops = clear.iter().filter_map(|journey| journey.reached.stop);
         let stops: Vec<_> = stops.filter(|stop| !simulated(stop)).collect();
         ensure(2 * stops.len() <= clear.len(), || {
@@ -162,6 +169,9 @@ pub(super) fn counted<K: Kind>(subject: &Subject<'_>) -> Finding {
         let (task, target) = (case.bench.task(), case.goal.target());
         build(subject, case)?.connect(&task, &case.from, &target, None, &mut context)?;
         counted_once(&context, K::SLOT)?;
+        let others = [Slot::GraspPlanner, Slot::TransferPlanner, Slot::RegraspPlanner].into_iter();
+        let other = others.filter(|slot| *slot != K::SLOT).find(|slot| context.tally.calls(*slot) > 0);
+        ensure(other.is_none(), || format!("it counts calls in another slot: {other:?}"))?;
     }
     Ok(())
 }
@@ -194,7 +204,30 @@ pub(super) fn interrupt<K: Kind>(subject: &Subject<'_>) -> Finding {
     Ok(())
 }
 
+/// One plugin asked for everything with one hand and object, last things first, answers as a fresh one does:
+/// what it remembers belongs to what it was asked.
+fn in_another_order<K: Kind>(subject: &Subject<'_>) -> Finding {
+    let journeys = journeys::<K>(subject)?;
+    let mut planners: Vec<(&'static Bench, Box<dyn LocalPlanner>)> = Vec::new();
+    for journey in journeys.iter().rev() {
+        let case = journey.case;
+        if !planners.iter().any(|(bench, _)| std::ptr::eq(*bench, case.bench)) {
+            planners.push((case.bench, build(subject, case)?));
+        }
+        let planner = planners.iter().find(|(bench, _)| std::ptr::eq(*bench, case.bench));
+        let Some((_, planner)) = planner else { continue };
+        let index = cases(K::SLOT).iter().position(|other| std::ptr::eq(other, case)).unwrap_or(0);
+        let (task, target, mut context) = (case.bench.task(), case.goal.target(), context(index as u64));
+        let again = planner.connect(&task, &case.from, &target, Some(&mut Path::default()), &mut context)?;
+        ensure(again == journey.reached, || {
+            format!("`{}`, case {index}: answers otherwise after other calls", case.bench.name)
+        })?;
+    }
+    Ok(())
+}
+
 pub(super) fn planner_pure<K: Kind>(subject: &Subject<'_>) -> Finding {
+    in_another_order::<K>(subject)?;
     let journeys = journeys::<K>(subject)?;
     let cases: Vec<_> = journeys.iter().map(|journey| journey.case).take(6).collect();
     let planners: Vec<_> = cases.iter().map(|case| build(subject, case)).collect::<Finding<_>>()?;

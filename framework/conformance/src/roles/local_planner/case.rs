@@ -1,11 +1,15 @@
 //! Problems for local planners: starts and targets.
 
-use crate::calls::{context, random};
+use super::places::{
+    around, at_rest, beside_a_pin, clasp, closed, on_ball, on_directions, outside, ring, slack, somewhere,
+    turned, two_soft_ones,
+};
+use crate::calls::random;
 use crate::fixtures::{Bench, to_hand};
-use crate::reference::{Closure, RejectionSampler, closure};
+use crate::reference::{Closure, closure};
 use regrasp_api::{
-    ClosedChainSampler, Configuration, Contact, FingerIndex, FingerJoints, FingerSet, Hand, PerFinger, Pose,
-    PoseRequest, Primitive, Random, Rotation, Slot, SurfaceParam, Target, TipRule, Vec3,
+    Configuration, Contact, FingerIndex, FingerJoints, FingerSet, Hand, Pose, Random, Slot, SurfaceParam,
+    Target, TipRule, Vec3,
 };
 use std::sync::OnceLock;
 
@@ -55,39 +59,6 @@ fn benches() -> [&'static Bench; 4] {
     [Bench::free_sphere(), Bench::hand_sphere(), Bench::hand_ellipsoid(), Bench::free_cube()]
 }
 
-/// A configuration with all fingers in contact, by the reference sampler.
-fn somewhere(bench: &Bench, key: u64) -> Configuration {
-    let pose = PoseRequest::At(Bench::center());
-    let found = RejectionSampler.sample(&bench.task(), pose, bench.fingers(), &mut context(key));
-    found.expect("nothing interrupts").expect("the kit's hands hold the kit's objects")
-}
-
-/// The same on the outside of the ring, where it bulges: into the hole a fingertip may touch at two places.
-fn outside(bench: &Bench, key: u64) -> Configuration {
-    let out = |contact: &Contact| {
-        !matches!(bench.world.object.primitive, Some(Primitive::Torus { ring_radius, .. })
-            if contact.p_OC.x.hypot(contact.p_OC.y) < 1.1 * ring_radius)
-    };
-    let all_out = |q: &Configuration| q.contacts.iter().all(|(_, contact)| contact.as_ref().is_none_or(out));
-    let found = (0..200).map(|i| somewhere(bench, key + 1000 * i)).find(all_out);
-    found.expect("most of the ring's surface is outside")
-}
-
-/// The joints of a hand whose fingertips stand on the contacts; `None` if one cannot.
-fn closed(bench: &Bench, X_HO: Pose, contacts: &PerFinger<Option<Contact>>) -> Option<Configuration> {
-    let hand = &*bench.world.hand;
-    let rest = PerFinger::from_fn(hand.finger_count(), |finger| hand.finger(finger).rest);
-    let near = Configuration { X_HO, joints: rest, contacts: *contacts };
-    RejectionSampler
-        .close(&bench.task(), &X_HO, contacts, &near, &mut context(0))
-        .expect("nothing interrupts")
-}
-
-fn turned(X_HO: &Pose, shift: Vec3, turn: Vec3) -> Pose {
-    let p = X_HO.translation.vector + shift;
-    Pose::from_parts(p.into(), Rotation::from_scaled_axis(turn) * X_HO.rotation)
-}
-
 fn transfers() -> Vec<Case> {
     let mut random = random(81);
     let mut cases = Vec::new();
@@ -115,6 +86,15 @@ fn transfers() -> Vec<Case> {
         let (shift, turn) = if clear.is_some() { (1e-3, 0.03) } else { (5e-3, 0.4) };
         add(soft, somewhere(soft, key), random.direction() * shift, random.direction() * turn, clear);
     }
+    // Two soft contacts hold what rests; when they may spin, as hard ones do, they do not.
+    two_soft_ones(soft).into_iter().for_each(|from| {
+        add(soft, from, Vec3::new(0.0, 0.0, 2e-3), Vec3::zeros(), None);
+    });
+    for bench in [Bench::pinned_palm(), Bench::pinned_scene()] {
+        beside_a_pin(bench).into_iter().for_each(|from| {
+            add(bench, from, Vec3::new(0.0, 0.052, 0.0), Vec3::zeros(), None);
+        });
+    }
     // Less than a step, and many of them with nothing on the way.
     for (bench, up) in [(free, 8e-3), (Bench::free_bar(), 8e-3), (point, 8e-3), (Bench::point_bar(), 8e-3)] {
         let from = if bench.is_ball() { ring(bench) } else { clasp(bench) };
@@ -126,6 +106,14 @@ fn transfers() -> Vec<Case> {
             Some("shorter than a step"),
         );
         add(bench, from, Vec3::new(0.0, 0.0, up), Vec3::zeros(), Some("long, straight"));
+    }
+    // Three fingers hold, and the first rests before them: a little of a way is free, then one of those that
+    // hold meets it, or the ball does.
+    for leading in [[1.0, 0.0, 0.1], [0.3, 0.9, 0.2]] {
+        let holding = on_ball(free, [[0.0, 0.3, 1.0], leading, [-0.5, 0.87, -0.1], [-0.5, -0.87, 0.0]]);
+        let from = at_rest(free, &holding, 0);
+        add(free, from.clone(), Vec3::new(-1e-3, 0.0, 2e-3), Vec3::zeros(), Some("with a finger at rest"));
+        add(free, from, Vec3::new(0.045, 0.0, 0.0), Vec3::zeros(), None);
     }
     for (key, bench, kind) in uneven() {
         for turn in [random.direction() * 0.03, random.direction() * 0.25] {
@@ -140,37 +128,6 @@ fn transfers() -> Vec<Case> {
 fn uneven() -> [(u64, &'static Bench, &'static str); 4] {
     let (bar, ring) = (Bench::free_bar(), Bench::free_ring());
     [(0, bar, "on a long box"), (1, bar, "on a long box"), (2, ring, "on a ring"), (3, ring, "on a ring")]
-}
-
-/// Fingertips on the two widest faces of the bar, two on each, a little over their margin from its edges.
-fn clasp(bench: &Bench) -> Configuration {
-    let at = [[0.05, 3e-3, 0.03], [3e-3, 0.05, 0.02], [-0.05, -3e-3, 0.03], [-3e-3, -0.05, -0.03]];
-    let contact =
-        |finger: FingerIndex| Some(bench.surface.project(&Vec3::from(at[finger.index()]), None).contact);
-    let contacts = PerFinger::from_fn(4, contact);
-    closed(bench, Bench::center(), &contacts).expect("each place is within the finger's box")
-}
-
-/// Free fingertips on a ball in these directions.
-fn on_ball(bench: &Bench, directions: [[f64; 3]; 4]) -> Configuration {
-    let contact = |finger: FingerIndex| {
-        let u = Vec3::from(directions[finger.index()]).normalize();
-        Some(bench.surface.project(&(u * 0.05), None).contact)
-    };
-    let contacts = PerFinger::from_fn(4, contact);
-    closed(bench, Bench::center(), &contacts).expect("each direction is within the finger's box")
-}
-
-/// Fingertips before, beside and behind the ball, one a little below.
-fn ring(bench: &Bench) -> Configuration {
-    on_ball(bench, [[1.0, 0.1, -0.2], [0.0, 1.0, 0.1], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]])
-}
-
-/// Fingertips that push the ball up, all of them.
-fn slack(bench: &Bench) -> Configuration {
-    let q = on_ball(bench, [[1.0, 0.0, -1.2], [0.0, 1.0, -1.2], [-1.0, 0.0, -1.2], [0.0, -1.0, -1.2]]);
-    assert_eq!(closure(&bench.task().grasp(&q, q.holding())), Closure::Open, "it holds nothing");
-    q
 }
 
 /// A configuration near another: the pose moved, every contact slid.
@@ -242,21 +199,6 @@ fn long_slides() -> [Case; 2] {
     [case(from, to, "one fingertip, long"), case(start, up, "long, straight")]
 }
 
-/// Directions of fingertips such that finger 0 passes `side` = ±1 along x on its shortest way from the first
-/// set to the second.
-///
-/// The others hold the ball in the plane of x and z.
-fn around(side: f64) -> [[[f64; 3]; 4]; 2] {
-    let (near, far) = ([side * 0.45, 0.89, 0.0], [side * 0.45, -0.89, 0.0]);
-    let holders = if side < 0.0 {
-        [[1.0, 0.0, 0.0], [-0.5, 0.0, 0.87], [-0.5, 0.0, -0.87]]
-    } else {
-        [[0.5, 0.0, 0.87], [-1.0, 0.0, 0.0], [0.5, 0.0, -0.87]]
-    };
-    let with = |first: [f64; 3]| [first, holders[0], holders[1], holders[2]];
-    [with(near), with(far)]
-}
-
 /// The regrasp of `finger` that leads to the configuration `to`.
 fn regrasp(
     bench: &'static Bench,
@@ -279,12 +221,13 @@ fn regrasps() -> Vec<Case> {
     let (free, walled) = (Bench::free_sphere(), Bench::walled_sphere());
     let [from, to] = around(-1.0).map(|directions| on_ball(free, directions));
     cases.push(regrasp(free, from.clone(), &to, 0, None));
-    // To rest and back.
-    let mut resting = from.clone();
-    resting.contacts[FingerIndex(0)] = None;
-    resting.joints[FingerIndex(0)] = free.world.hand.finger(FingerIndex(0)).rest;
+    let (held, resting) = (ring(free), at_rest(free, &ring(free), 0));
+    cases.push(regrasp(free, held.clone(), &resting, 0, Some("letting go")));
+    cases.push(regrasp(free, resting, &held, 0, Some("setting down")));
+    let resting = at_rest(free, &from, 0);
     cases.push(regrasp(free, from.clone(), &resting, 0, None));
     cases.push(regrasp(free, resting, &to, 0, None));
+    cases.extend([Bench::pinned_palm(), Bench::pinned_scene()].into_iter().filter_map(past_a_pin));
     // Between ball and wall, and with a finger that the grasp needs.
     let [from, to] = around(1.0).map(|directions| on_ball(walled, directions));
     cases.push(regrasp(walled, from, &to, 0, None));
@@ -302,8 +245,25 @@ fn regrasps() -> Vec<Case> {
     let past = [[0.6, 0.8, -0.1], [0.84, -0.5, 0.2]]
         .map(|second| on_ball(free, [[1.0, 0.1, -0.2], second, [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]));
     cases.push(regrasp(free, past[0].clone(), &past[1], 1, None));
+    for side in [1.0, -1.0] {
+        let [from, to] = [-0.5 * side, 1.1 * side]
+            .map(|z| on_ball(free, [[1.0, 0.1, -0.2], [0.2, 0.9, z], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]]));
+        cases.push(regrasp(free, from, &to, 1, Some("far")));
+    }
     cases.extend(over_an_edge());
     cases
+}
+
+/// The first finger from one side of a pin to the other, the tip far above it: its links cannot pass.
+fn past_a_pin(bench: &'static Bench) -> Option<Case> {
+    let [from, to] = [1.0, -1.0].map(|side| {
+        let first = [0.6, 0.7 * side, 0.39];
+        on_directions(bench, [first, [0.0, 1.0, 0.1], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]])
+    });
+    let (from, to) = (from?, to?);
+    let free =
+        |q: &Configuration| bench.task().clearance.configuration_free(q, bench.fingers(), true).is_ok();
+    (free(&from) && free(&to)).then(|| regrasp(bench, from, &to, 0, None))
 }
 
 /// One finger of a clasp from a wide face of the bar to a narrow one, and the other way round.

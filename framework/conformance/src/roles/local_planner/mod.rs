@@ -4,6 +4,7 @@ mod answer;
 mod case;
 mod inspect;
 mod journey;
+mod places;
 mod special;
 mod way;
 
@@ -174,6 +175,11 @@ pub(crate) const REGRASP: &[Law] = laws!(
         name: "regrasp-touches-at-ends",
         why: "a fingertip that scrapes along the object moves it",
         check: special::touches_at_ends,
+    },
+    Law {
+        name: "regrasp-lifts",
+        why: "a fingertip that comes down again beside its contact, or does not rise, slides",
+        check: special::lifts,
     }
 );
 

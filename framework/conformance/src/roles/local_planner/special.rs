@@ -5,8 +5,9 @@ use super::inspect::{Touch, instants};
 use super::{Journey, Kind, Regrasp, Transfer, on_journeys};
 use crate::fixtures::to_object;
 use crate::law::Subject;
-use crate::report::{Finding, ensure};
+use crate::report::{Fault, Finding, ensure};
 use regrasp_api::{Fingertip, Hand, Vec3};
+use regrasp_audit::laws::{self, Chain, Ground, Motion};
 
 pub(super) fn same_fingers<K: Kind>(subject: &Subject<'_>) -> Finding {
     on_journeys::<K>(subject, |journey| {
@@ -77,9 +78,6 @@ pub(super) fn others_rest(subject: &Subject<'_>) -> Finding {
     })
 }
 
-/// How far (m) the fingertip must have left the object half-way from contact to contact.
-const LIFTED: f64 = 1e-3;
-
 pub(super) fn touches_at_ends(subject: &Subject<'_>) -> Finding {
     on_journeys::<Regrasp>(subject, |journey| {
         let Goal::Regrasp { finger, .. } = &journey.case.goal else { return Ok(()) };
@@ -88,17 +86,26 @@ pub(super) fn touches_at_ends(subject: &Subject<'_>) -> Finding {
         if states.len() < 2 {
             return Ok(());
         }
-        let mut highest = f64::NEG_INFINITY;
         for (at, q) in instants(&journey.path) {
             let gap = Touch::new(journey.case.bench, &q, *finger).gap;
-            highest = highest.max(gap);
             let end = at == 0.0 || at == last;
             ensure(end || gap > 0.0, || format!("the finger touches, gap {gap:e} m, at {at} of {last}"))?;
             let touching = end || q.contacts[*finger].is_none() || at < 1.0;
             ensure(touching, || format!("says that it touches at {at} of {last}"))?;
         }
-        let moved = states[0].joints[*finger] != journey.reached.end.joints[*finger];
-        ensure(!moved || highest >= LIFTED, || format!("the finger rises {highest:e} m only"))?;
         Ok(())
+    })
+}
+
+/// The law that the verifier has.
+pub(super) fn lifts(subject: &Subject<'_>) -> Finding {
+    on_journeys::<Regrasp>(subject, |journey| {
+        let (bench, case) = (journey.case.bench, journey.case);
+        let (task, target) = (bench.task(), case.goal.target());
+        let ground = Ground { mesh: &bench.world.object.mesh, radius: bench.radius() };
+        let chain = Chain { task: &task, ground, closure: 0.5 * bench.tolerances.closure };
+        let (from, reached, path) = (&case.from, &journey.reached, &journey.path);
+        let kept = laws::lift_kept(&Motion { chain, from, to: &target, reached, path });
+        kept.map_err(|fault| Fault::Broken(fault.what))
     })
 }

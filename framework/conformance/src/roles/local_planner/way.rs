@@ -94,7 +94,8 @@ pub(super) fn contacts_true<K: Kind>(subject: &Subject<'_>) -> Finding {
                     continue;
                 };
                 let off = (contact.p_OC - touch.p_OC).norm();
-                let turned = contact.n_O.cross(&touch.n_O).norm();
+                // Mirrored ones are not parallel.
+                let turned = (contact.n_O - touch.n_O).norm();
                 let fits =
                     off <= 0.5 * tolerances.closure * SLACK && turned <= 0.5 * tolerances.normal * SLACK;
                 ensure(fits, || {

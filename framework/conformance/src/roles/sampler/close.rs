@@ -2,9 +2,9 @@
 
 use super::{CLOSED, benches, build, somewhere, usual};
 use crate::fixtures::Bench;
-use crate::law::{Subject, context};
+use crate::law::{Subject, context, random};
 use crate::report::{Finding, broken, ensure};
-use regrasp_api::{Hand, Pose};
+use regrasp_api::{Hand, Pose, SurfaceParam};
 
 pub(super) fn close_exact(subject: &Subject<'_>) -> Finding {
     closes_what_holds_nothing(subject)?;
@@ -29,8 +29,30 @@ pub(super) fn close_exact(subject: &Subject<'_>) -> Finding {
                 ensure(jump <= 0.2, || {
                     format!("finger {} jumps by {jump} for a motion of 0.5 mm", finger.0)
                 })?;
+                ensure(bench.world.hand.within_limits(finger, joints), || {
+                    format!("the joints of finger {} are beyond their limits: {joints:?}", finger.0)
+                })?;
             }
         }
+    }
+    closes_what_is_given(subject)
+}
+
+/// The contacts are those that are given, not those of the configuration nearby.
+fn closes_what_is_given(subject: &Subject<'_>) -> Finding {
+    let bench = Bench::free_sphere();
+    let (sampler, near, mut random) = (build(subject, bench)?, somewhere(bench, 4), random(72));
+    let mut contacts = near.contacts;
+    for finger in bench.fingers().iter() {
+        contacts[finger] = contacts[finger].map(|c| bench.surface.walk(&c, &random.direction(), 1e-3));
+    }
+    let found = sampler.close(&bench.task(), &near.X_HO, &contacts, &near, &mut context(0))?;
+    let Some(q) = found else { return broken("does not close contacts a millimetre beside closed ones") };
+    ensure(q.contacts == contacts, || "closes other contacts than those that are given".into())?;
+    for finger in bench.fingers().iter() {
+        let tip = bench.world.hand.tip_center(finger, &q.joints[finger]);
+        let gap = (q.contact_tip_center(finger, bench.radius()).unwrap_or(tip) - tip).norm();
+        ensure(gap <= CLOSED, || format!("finger {} is {gap:e} m off its contact", finger.0))?;
     }
     Ok(())
 }

@@ -162,6 +162,8 @@ fn succeeds(subject: &Subject<'_>) -> Finding {
 
 fn closed(subject: &Subject<'_>) -> Finding {
     on_samples(subject, |bench, _, _, q| {
+        let length = q.X_HO.rotation.coords.norm();
+        ensure((length - 1.0).abs() <= 1e-9, || format!("the orientation has length {length:.9}"))?;
         for finger in q.holding().iter() {
             let tip = bench.world.hand.tip_center(finger, &q.joints[finger]);
             let gap = (q.contact_tip_center(finger, bench.radius()).unwrap_or(tip) - tip).norm();
@@ -225,7 +227,16 @@ fn varies(subject: &Subject<'_>) -> Finding {
         found.extend(sampler.sample(&bench.task(), request, bench.fingers(), &mut context(key))?);
     }
     let alike = found.windows(2).filter(|pair| pair[0] == pair[1]).count();
-    ensure(alike == 0, || format!("{alike} of {} samples of different streams are alike", found.len()))
+    ensure(alike == 0, || format!("{alike} of {} samples of different streams are alike", found.len()))?;
+    let near = somewhere(bench, 1);
+    for key in 0..8 {
+        let request = PoseRequest::Near { configuration: &near, radius: 3e-3, angle: 0.2 };
+        let found = sampler.sample(&bench.task(), request, bench.fingers(), &mut context(key))?;
+        ensure(found.as_ref() != Some(&near), || {
+            "what is drawn near a configuration is that one itself".into()
+        })?;
+    }
+    Ok(())
 }
 
 fn counts_reasons(subject: &Subject<'_>) -> Finding {

@@ -4,7 +4,7 @@ use super::build;
 use crate::fixtures::Bench;
 use crate::law::{Subject, context};
 use crate::report::{Finding, ensure};
-use regrasp_api::{Configuration, Pose, PoseRequest, angle_between};
+use regrasp_api::{Configuration, Pose, PoseRequest, Vec3, angle_between};
 
 /// The most samples that are drawn to see every side.
 const DRAWS: u64 = 150;
@@ -18,6 +18,8 @@ struct Sides {
     halves: [[u64; 2]; 3],
     /// Contacts in each octant of the ball.
     octants: [u64; 8],
+    /// The object's axes x, y, z up and down the vertical.
+    upright: [[u64; 2]; 3],
     turned: u64,
 }
 
@@ -31,6 +33,11 @@ impl Sides {
         for contact in q.contacts.iter().filter_map(|(_, contact)| contact.as_ref()) {
             self.octants[(0..3).map(|i| usize::from(contact.p_OC[i] > 0.0) << i).sum::<usize>()] += 1;
         }
+        for (axis, sides) in self.upright.iter_mut().enumerate() {
+            let up = (q.X_HO.rotation * Vec3::ith(axis, 1.0)).z;
+            // Level to rounding is neither.
+            sides[usize::from(up < 0.0)] += u64::from(up.abs() > 1e-3);
+        }
         let turn = |X_HO: &Pose| angle_between(&X_HO.rotation, &q.X_HO.rotation);
         self.turned += u64::from(bench.task().landmarks.iter().all(|landmark| turn(landmark) > TURNED));
     }
@@ -39,6 +46,10 @@ impl Sides {
     fn lacks(&self) -> Option<String> {
         if self.turned == 0 {
             return Some(format!("none turns the object by {TURNED} rad from start and goal"));
+        }
+        if let Some(i) = (0..6).find(|i| self.upright[i / 2][i % 2] == 0) {
+            let (axis, side) = (["x", "y", "z"][i / 2], ["up", "down"][i % 2]);
+            return Some(format!("none turns the object's {axis} axis {side}"));
         }
         let half = (0..6).find(|i| self.halves[i / 2][i % 2] == 0);
         let half = half.map(|i| (["x", "y", "z"][i / 2], ["upper", "lower"][i % 2]));

@@ -18,6 +18,14 @@ pub(super) fn walk(subject: &Subject<'_>) -> Finding {
                 is_contact(ground, &to, 1e-7)?;
                 // At a concave edge the contact jumps under a fingertip that stays.
                 ensure(chord <= distance + 1e-9 || !ground.is_convex(), text)?;
+                // Bent by an edge or two, a short way ends not much nearer.
+                let short = distance <= 2e-3 && ground.is_convex();
+                ensure(!short || chord >= 0.4 * distance - 1e-9, text)?;
+                let longer = ground.surface.walk(&from, &(direction * 3.0), distance);
+                let off = (longer.p_OC - to.p_OC).norm();
+                ensure(off <= 1e-7, || {
+                    format!("with three times the direction it ends {off:e} m beside {to:?}")
+                })?;
                 if let Some(Primitive::Cuboid { half_size }) = ground.object.primitive {
                     let tangent = direction - from.n_O * from.n_O.dot(&direction);
                     let flat = from.p_OC + tangent.normalize() * distance;

@@ -31,14 +31,16 @@ fn on_paths(
 }
 
 pub(super) fn endpoints(subject: &Subject<'_>) -> Finding {
-    on_paths(subject, |_, (from, to), path| {
+    on_paths(subject, |ground, (from, to), path| {
         let first = path.waypoints.first().map(|w| (w.contact, w.lift_length));
         let last = path.waypoints.last().map(|w| w.contact);
         ensure(first == Some((*from, 0.0)) && last == Some(*to), || {
             format!("the path from {from:?} to {to:?} begins at {first:?} and ends at {last:?}")
         })?;
         let ends = [path.at(0.0), path.at(1.0)];
-        ensure(ends == [*from, *to], || format!("its ends are {ends:?}, not {from:?} and {to:?}"))
+        ensure(ends == [*from, *to], || format!("its ends are {ends:?}, not {from:?} and {to:?}"))?;
+        between_the_same_facets(ground, (from, to))?;
+        restarts(ground, (from, to), path)
     })?;
     // From a contact to itself.
     on_each(subject, |ground| {
@@ -46,6 +48,36 @@ pub(super) fn endpoints(subject: &Subject<'_>) -> Finding {
         let path = ground.path(&contact, &contact)?;
         let stays = path.length.abs() <= 1e-9 && path.lift_length() <= 1e-9;
         ensure(stays && path.at(0.5).p_OC == contact.p_OC, || format!("from a contact to itself: {path:?}"))
+    })
+}
+
+/// Another point of the facet that holds a contact.
+fn beside(ground: &Ground, contact: &Contact) -> Contact {
+    let mesh = &ground.object.mesh;
+    let facet = ground.closest(&contact.p_OC).facet;
+    let [a, b, c] = mesh.corners(facet);
+    let p_OC = contact.p_OC.lerp(&((a + b + c) / 3.0), 0.3);
+    ground.surface.project(&(p_OC + mesh.normal(facet) * 1e-3), None).contact
+}
+
+/// A path between the same facets is another one.
+fn between_the_same_facets(ground: &Ground, (from, to): (&Contact, &Contact)) -> Finding {
+    let (a, b) = (beside(ground, from), beside(ground, to));
+    let path = match ground.path(&a, &b) {
+        Err(Fault::Skip(_)) => return Ok(()),
+        path => path?,
+    };
+    let ends = [path.waypoints.first(), path.waypoints.last()].map(|w| w.map(|w| w.contact));
+    ensure(ends == [Some(a), Some(b)], || format!("the path from {a:?} to {b:?} has the ends {ends:?}"))
+}
+
+/// What a path held before is none of its waypoints.
+fn restarts(ground: &Ground, (from, to): (&Contact, &Contact), path: &SurfacePath) -> Finding {
+    let old = Waypoint { contact: *to, lift_length: 1.0 };
+    let mut used = SurfacePath { waypoints: vec![old; 2], length: 1.0 };
+    ground.surface.geodesic(from, to, &mut used, &mut context(0))?;
+    ensure(used == *path, || {
+        "it goes on where the path that it is given ends, and does not restart it".into()
     })
 }
 
@@ -107,17 +139,19 @@ pub(super) fn length(subject: &Subject<'_>) -> Finding {
     })
 }
 
+/// By how much (relative) a fingertip's way over a dented object may be longer than that of a point.
+const AROUND: f64 = 0.5;
+
 pub(super) fn shortest(subject: &Subject<'_>) -> Finding {
     let tolerance = subject.demands.geodesic_tolerance;
     let mut reference: Option<(&str, FacetSurface)> = None;
     on_paths(subject, |ground, (from, to), path| {
-        if !ground.is_convex() {
-            return Ok(());
-        }
         if reference.as_ref().is_none_or(|(name, _)| *name != ground.name) {
             reference = Some((ground.name, FacetSurface::new(&ground.object.mesh, ground.radius)));
         }
         let (_, facets) = reference.as_ref().expect("it was just made");
+        // Where a fingertip cannot follow every dent it may have to go round, but not much.
+        let tolerance = if ground.is_convex() { tolerance } else { AROUND };
         let longest = over_facets(facets, from, to)?;
         ensure(path.length <= longest * (1.0 + tolerance) + 1e-9, || {
             format!("length {} m, but {longest} m is possible: {from:?} {to:?}", path.length)
