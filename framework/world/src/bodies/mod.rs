@@ -43,7 +43,10 @@ pub enum BodyFault {
         at: [f64; 3],
     },
     /// A surface crosses itself.
-    #[error("the surface crosses itself in {count} places, the first near {at:.4?}; repair the mesh there")]
+    #[error(
+        "the surface crosses itself in {count} places, the first near {at:.4?}; repair the mesh there, or let \
+         `regrasp object FILE --repair -o clean.stl` make a closed surface of it"
+    )]
     Crossing {
         /// How many pairs of facets cross.
         count: usize,
@@ -52,7 +55,8 @@ pub enum BodyFault {
     },
     /// Two facets lie back to back.
     #[error(
-        "the surface folds back on itself near {at:.4?}, a wall without thickness; remove it or give it some"
+        "the surface folds back on itself near {at:.4?}, a wall without thickness; remove it or give it some, \
+         or let `regrasp object FILE --repair -o clean.stl` make a closed surface of it"
     )]
     Fold {
         /// Where (m).
@@ -84,19 +88,54 @@ struct Part {
     upper: Vec3,
 }
 
+/// A mesh as one rigid object, and what was done for that.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidBody {
+    /// The mesh (m).
+    pub mesh: Mesh,
+    /// How many bodies that overlap or touch were united; 0 where none were.
+    pub united: usize,
+    /// How many bodies within others were left out.
+    pub within: usize,
+}
+
+impl RigidBody {
+    /// What was done, for people; nothing where nothing was.
+    pub fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if self.united > 0 {
+            let united = self.united;
+            remarks.push(format!(
+                "{united} bodies that overlap or touch were united; what they share counts once"
+            ));
+        }
+        match self.within {
+            0 => {}
+            1 => remarks.push("a body within another was left out: it is part of it".into()),
+            within => {
+                remarks.push(format!("{within} bodies within others were left out: they are part of them"))
+            }
+        }
+        remarks
+    }
+}
+
 /// The mesh as one rigid object, or why it is none.
 ///
-/// Bodies that overlap are united. A body within another is part of it and left out; a surface that looks
+/// Bodies that overlap, or touch by faces, are united. A body within another is part of it and left out; a surface that looks
 /// inward within a body is a hollow. Several bodies that do not touch pass as an `assembly` only. Cost: about
 /// 3 µs a facet.
-pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<Mesh, BodyFault> {
+pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<RigidBody, BodyFault> {
     let (parts, part_of) = parts(&mesh);
     match crossing::check(&mesh, &part_of, parts.len()) {
         Err(fault @ BodyFault::Overlap { first, second, .. }) => {
             let inward = [first, second].into_iter().find(|&body| parts[body - 1].volume < 0.0);
             return match inward {
                 Some(body) => Err(inside_out(&parts, body - 1)),
-                None => union::united(&mesh, &parts, is_sound).ok_or(fault),
+                None => match union::united(&mesh, &parts, is_sound) {
+                    Some(mesh) => Ok(RigidBody { mesh, united: parts.len(), within: 0 }),
+                    None => Err(fault),
+                },
             };
         }
         checked => checked?,
@@ -114,6 +153,9 @@ pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<Mesh, BodyFault> {
         }
     }
     if let (Some(&second), false) = (apart.get(1), assembly) {
+        if let Some(mesh) = union::joined(&mesh, &parts, is_sound) {
+            return Ok(RigidBody { mesh, united: parts.len(), within: 0 });
+        }
         let second = &parts[second];
         return Err(BodyFault::Apart {
             count: apart.len(),
@@ -121,12 +163,14 @@ pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<Mesh, BodyFault> {
             at: second.at.into(),
         });
     }
-    if kept.iter().all(|&kept| kept) {
-        return Ok(mesh);
+    let within = kept.iter().filter(|&&kept| !kept).count();
+    if within == 0 {
+        return Ok(RigidBody { mesh, united: 0, within });
     }
     let facets = mesh.facets().iter().zip(&part_of).filter(|(_, part)| kept[**part as usize]);
     let facets: Vec<[u32; 3]> = facets.map(|(facet, _)| *facet).collect();
-    Ok(Mesh::new(mesh.vertices().to_vec(), facets).unwrap_or(mesh))
+    let mesh = Mesh::new(mesh.vertices().to_vec(), facets).unwrap_or(mesh);
+    Ok(RigidBody { mesh, united: 0, within })
 }
 
 fn inside_out(parts: &[Part], i: usize) -> BodyFault {
@@ -156,6 +200,11 @@ pub fn outward_bodies(mesh: Mesh) -> Mesh {
     let turned = |(f, part): (&[u32; 3], &u32)| if inward[*part as usize] { [f[0], f[2], f[1]] } else { *f };
     let facets = mesh.facets().iter().zip(&part_of).map(turned).collect();
     Mesh::new(mesh.vertices().to_vec(), facets).unwrap_or(mesh)
+}
+
+/// The volume (m³; negative where it looks inward) and the facets of each connected surface.
+pub(crate) fn facets_of_bodies(mesh: &Mesh) -> Vec<(f64, Vec<u32>)> {
+    parts(mesh).0.into_iter().map(|part| (part.volume, part.facets)).collect()
 }
 
 /// How many connected surfaces a mesh has.

@@ -13,8 +13,9 @@ const MOST_PLACES: f64 = 60_000.0;
 const SINK: f64 = 1e-6;
 /// What may lie between the places (m), added to the bound that was found ...
 const BETWEEN: f64 = 5e-6;
-/// ... and in dents, as far as the tolerance leaves room for it.
-const BETWEEN_IN_DENTS: f64 = 4e-5;
+/// ... and in dents, as a part of the tolerance: there a ball rolls along where two facets hold it, and feels
+/// what no place on one of them tells.
+const BETWEEN_IN_DENTS: f64 = 0.2;
 /// Facets on which a gap or depth this near (m) to the largest was found are looked at more closely ...
 const CLOSE: f64 = 4e-5;
 /// ... at places so many times nearer to each other: in a dent the ball lies deepest just beside the edge.
@@ -53,8 +54,8 @@ impl Touch {
     pub fn bound(&self, twin: &Mesh, most: f64) -> Option<f64> {
         let (above, below) = self.range(twin, most)?;
         let found = above.max(below);
-        let between = if twin.is_locally_convex() { BETWEEN } else { BETWEEN_IN_DENTS };
-        (found + BETWEEN <= most).then_some((found + between).min(most))
+        let between = if twin.is_locally_convex() { BETWEEN } else { BETWEEN_IN_DENTS * most };
+        (found + between <= most).then_some(found + between)
     }
 
     /// How far (m) the ball is from the mesh at most, and how deep it enters it, over all places where it
