@@ -9,6 +9,8 @@ use std::f64::consts::PI;
 
 /// Facets that reach through each other by less than this part of the mesh's size touch.
 const DEEP: f64 = 1e-6;
+/// The line that two facets share is the same for both to so many times that.
+const BESIDE: f64 = 20.0;
 /// Two facets that meet at an angle (rad) below this lie back to back.
 const FOLDED: f64 = 1e-6;
 
@@ -124,6 +126,12 @@ fn crossing(mesh: &Mesh, a: u32, b: u32, deep: f64) -> Option<Vec3> {
         return None;
     }
     let along = (q - p) / length;
+    // They do not where a plane hardly leans from the other, and a corner that counts as on it is far from
+    // the line: then the facets lie side by side.
+    let beside = |x: &Vec3| along.cross(&(x - p)).norm();
+    if beside(&r).max(beside(&s)) > BESIDE * deep {
+        return None;
+    }
     let (r, s) = ((r - p).dot(&along), (s - p).dot(&along));
     let (from, to) = (r.min(s).max(0.0), r.max(s).min(length));
     (to - from > deep).then(|| p + along * (0.5 * (from + to)))

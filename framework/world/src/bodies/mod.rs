@@ -84,9 +84,16 @@ struct Part {
     /// Volume (m³); negative where the facets look inward.
     volume: f64,
     at: Vec3,
+    /// Points all over it.
+    samples: Vec<Vec3>,
     lower: Vec3,
     upper: Vec3,
 }
+
+/// About as many points tell where a surface lies that may touch others.
+const SAMPLES: usize = 16;
+/// A winding number this near to a whole one is no matter of touching.
+const WHOLE: f64 = 0.01;
 
 /// A mesh as one rigid object, and what was done for that.
 #[derive(Clone, Debug, PartialEq)]
@@ -143,8 +150,7 @@ pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<RigidBody, BodyFault> {
     let mut kept = vec![true; parts.len()];
     let mut apart = Vec::new();
     for (i, part) in parts.iter().enumerate() {
-        let around: i64 =
-            (0..parts.len()).filter(|&j| j != i).map(|j| turns(&mesh, &parts[j], &part.at)).sum();
+        let around: i64 = (0..parts.len()).filter(|&j| j != i).map(|j| turns(&mesh, &parts[j], part)).sum();
         match (part.volume > 0.0, around > 0) {
             (true, true) => kept[i] = false,
             (true, false) => apart.push(i),
@@ -189,8 +195,7 @@ fn is_sound(mesh: &Mesh) -> bool {
 pub fn outward_bodies(mesh: Mesh) -> Mesh {
     let (parts, part_of) = parts(&mesh);
     let inward = |i: usize| {
-        let around =
-            (0..parts.len()).filter(|&j| j != i).map(|j| turns(&mesh, &parts[j], &parts[i].at).abs());
+        let around = (0..parts.len()).filter(|&j| j != i).map(|j| turns(&mesh, &parts[j], &parts[i]).abs());
         parts[i].volume < 0.0 && around.sum::<i64>() == 0
     };
     let inward: Vec<bool> = (0..parts.len()).map(inward).collect();
@@ -249,25 +254,46 @@ fn part(mesh: &Mesh, facets: Vec<u32>) -> Part {
             (lower, upper) = (lower.inf(&corner), upper.sup(&corner));
         }
     }
-    Part { facets, volume, at, lower, upper }
+    let middle = |&facet: &u32| mesh.corners(facet).iter().sum::<Vec3>() / 3.0;
+    let samples = facets.iter().step_by(facets.len().div_ceil(SAMPLES)).map(middle).collect();
+    Part { facets, volume, at, samples, lower, upper }
 }
 
-/// How often a surface winds around a point: 1 within a body, -1 within one that is inside out.
+/// How often a surface winds around another that does not cross it: 1 around one within a body, -1 within a
+/// body that is inside out.
+///
+/// Where the two touch, points of the one lie on the other, and tell nothing: another point is asked.
+fn turns(mesh: &Mesh, part: &Part, other: &Part) -> i64 {
+    let is_in_box = |p: &Vec3| (0..3).all(|k| p[k] >= part.lower[k] && p[k] <= part.upper[k]);
+    if !other.samples.iter().all(is_in_box) {
+        return 0;
+    }
+    let off = |winding: f64| (winding - winding.round()).abs();
+    let mut best = f64::NAN;
+    for p in &other.samples {
+        let winding = winding(mesh, part, p);
+        if best.is_nan() || off(winding) < off(best) {
+            best = winding;
+        }
+        if off(best) < WHOLE {
+            break;
+        }
+    }
+    best.round() as i64
+}
+
+/// How often a surface winds around a point.
 ///
 /// The sum of the solid angles of its facets (van Oosterom and Strackee, "The solid angle of a plane
 /// triangle", IEEE Trans. Biomed. Eng. 1983).
-fn turns(mesh: &Mesh, part: &Part, p: &Vec3) -> i64 {
-    if (0..3).any(|k| p[k] < part.lower[k] || p[k] > part.upper[k]) {
-        return 0;
-    }
+fn winding(mesh: &Mesh, part: &Part, p: &Vec3) -> f64 {
     let angle = |&facet: &u32| {
         let [a, b, c] = mesh.corners(facet).map(|corner| corner - p);
         let (x, y, z) = (a.norm(), b.norm(), c.norm());
         let below = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
         2.0 * a.dot(&b.cross(&c)).atan2(below)
     };
-    let sum: f64 = part.facets.iter().map(angle).sum();
-    (sum / (4.0 * std::f64::consts::PI)).round() as i64
+    part.facets.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
 #[cfg(test)]

@@ -31,7 +31,10 @@ pub(super) fn joined(mesh: &Mesh, parts: &[Part], is_sound: impl Fn(&Mesh) -> bo
     // A body that no other one's box meets stays apart.
     let meets_one = |i: usize| (0..parts.len()).any(|j| j != i && meet(&parts[i], &parts[j]));
     let may_touch = parts.len() <= MANY && (0..parts.len()).all(meets_one);
-    may_touch.then(|| union(mesh, parts, 0.0)).flatten().filter(is_sound)
+    let volume: f64 = parts.iter().map(|part| part.volume).sum();
+    // They share nothing: a union of another volume is none.
+    let is_whole = |union: &Mesh| (union.mass_properties().volume - volume).abs() < 1e-6 * volume;
+    may_touch.then(|| union(mesh, parts, 0.0)).flatten().filter(is_whole).filter(is_sound)
 }
 
 /// The union of bodies of which each is moved by a little (m) from the one before.

@@ -3,8 +3,9 @@
 use super::winding::Winding;
 use regrasp_api::{Mesh, Vec3};
 
-/// Facets farther off than this many steps do not say where the surface is: holes are closed half way.
-const NEAR: f64 = 1.5;
+/// Facets farther off than this many steps do not say where the surface is: holes are closed half way. An edge
+/// of a tetrahedron that goes through a facet has no end as far from it.
+const NEAR: f64 = 1.8;
 /// No value is nearer to zero than this many steps: the surface keeps off the grid's own points.
 const LEAST: f64 = 0.04;
 /// Bodies of fewer cells than this are specks.
@@ -54,7 +55,7 @@ impl Grid {
             let inside = 0.5 - winds[number];
             let is_beside = self.around_point(number).any(|other| (0.5 - winds[other]) * inside < 0.0);
             let off = if is_beside { distance(&self.point(number)) / self.step } else { NEAR };
-            let size = if off < NEAR { off } else { (2.0 * inside.abs()).min(1.0) };
+            let size = if off < NEAR { off } else { NEAR * (2.0 * inside.abs()).min(1.0) };
             size.max(LEAST).copysign(inside)
         })
     }

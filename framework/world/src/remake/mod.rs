@@ -24,6 +24,8 @@ use winding::Winding;
 const STEPS: usize = 96;
 /// How far (steps) the surface may move when it is given fewer facets.
 const MOVED: f64 = 0.08;
+/// How far (steps) beside a facet inside and outside are looked for.
+const BESIDE: f64 = 0.25;
 
 /// A surface that was made anew.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,9 +57,10 @@ impl Remade {
 pub fn remake(vertices: &[Vec3], facets: &[[u32; 3]]) -> Option<Remade> {
     let facets = sound(vertices, facets);
     let winding = Winding::new(vertices, &facets)?;
-    let glam = |v: &Vec3| Vector::new(v.x, v.y, v.z);
-    let surface = TriMesh::new(vertices.iter().map(glam).collect(), facets).ok()?;
     let grid = Grid::around(vertices, STEPS)?;
+    let glam = |v: &Vec3| Vector::new(v.x, v.y, v.z);
+    let border = border(vertices, facets, &winding, BESIDE * grid.step);
+    let surface = TriMesh::new(vertices.iter().map(glam).collect(), border).ok()?;
     let distance = |p: &Vec3| surface.distance_to_local_point(glam(p), false);
     let values = grid.values(&winding, &distance);
     let (corners, triangles) = tetrahedra::surface(&grid, &values);
@@ -69,6 +72,17 @@ pub fn remake(vertices: &[Vec3], facets: &[[u32; 3]]) -> Option<Remade> {
     off.sort_by(f64::total_cmp);
     let off = (off[off.len() / 2], *off.last()?);
     Some(Remade { mesh, step: grid.step, off })
+}
+
+/// The facets that have the inside on one side and the outside on the other, so far (m) from them: others lie
+/// within, or hang in the air.
+fn border(vertices: &[Vec3], facets: Vec<[u32; 3]>, winding: &Winding, beside: f64) -> Vec<[u32; 3]> {
+    let is_border = |facet: &[u32; 3]| {
+        let [a, b, c] = facet.map(|vertex| vertices[vertex as usize]);
+        let (middle, off) = ((a + b + c) / 3.0, (b - a).cross(&(c - a)).normalize() * beside);
+        (winding.at(&(middle + off)) > 0.5) != (winding.at(&(middle - off)) > 0.5)
+    };
+    facets.into_iter().filter(is_border).collect()
 }
 
 /// The facets that have an area and corners that are there.

@@ -42,7 +42,6 @@ fn a_ball_with_a_hole_a_doubled_facet_and_a_spike_through_it_becomes_a_ball() {
     let volume = remade.mesh.mass_properties().volume / (4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3));
     assert!((volume - 1.0).abs() < 0.02, "{volume}");
     assert!(remade.off.0 < 0.1 * remade.step, "{:?}", remade.off);
-    assert!(off_ball(&remade.mesh) < 0.1 * RADIUS);
     assert!(remade.remark().contains("made anew"));
 }
 
