@@ -53,11 +53,15 @@ impl ReadMesh {
             1 => remarks.push("a facet without area was left out; the rest is closed".into()),
             count => remarks.push(format!("{count} facets without area were left out; the rest is closed")),
         }
-        if self.welded > 0.0 {
-            let (merged, within) = (self.merged, self.welded);
-            remarks.push(format!(
-                "{merged} vertices became one with others within {within:.1e} m: only that closes the mesh"
-            ));
+        let within = self.welded;
+        match self.merged {
+            0 => {}
+            1 => remarks.push(format!(
+                "a vertex became one with another within {within:.1e} m: only that closes the mesh"
+            )),
+            count => remarks.push(format!(
+                "{count} vertices became one with others within {within:.1e} m: only that closes the mesh"
+            )),
         }
         remarks
     }
