@@ -58,12 +58,6 @@ impl Failure {
         &self.message
     }
 
-    /// What it is about, in fields.
-    #[cfg(feature = "rapier")]
-    pub fn into_refusal(self) -> Box<Refusal> {
-        self.refusal
-    }
-
     /// The failure as JSON: `{"error": {"code": …, "message": …, "file": …, "line": …, "key": …, …}}`.
     pub fn json(&self) -> Value {
         json!({ "error": self.refusal })

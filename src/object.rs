@@ -6,9 +6,9 @@ use crate::view::PageArgs;
 use crate::{Failure, say, say_json};
 use clap::Args;
 use regrasp::api::{MassProperties, Mesh, MeshError, MeshSource, Twin, Vec3};
-use regrasp::formats::{FormatError, load_mesh};
+use regrasp::formats::{FormatError, ReadMesh, read_mesh, read_points};
 use regrasp::view::{ObjectView, object_page};
-use regrasp::world::{Measures, automatic_twin, measure, outward_bodies, rigid_body, roughness};
+use regrasp::world::{Measures, automatic_twin, measure, outward_bodies, remake, rigid_body, roughness};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,10 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 A scenario names the file itself: `shape = { kind = \"mesh\", file = \"part.stl\", scale = 0.001 }`. \
 `--repair` makes what differs by rounding \
-one, leaves facets without area out and turns bodies the right way round; it fills no holes.\n\n\
+one, leaves facets without area out and turns bodies the right way round. Where that is not enough, it makes \
+the surface anew: closed, \
+through the file's facets where they are, with holes closed and details lost that are finer than a hundredth of \
+the size; it says so.\n\n\
 Examples:\n  regrasp object part.stl --scale 0.001\n  regrasp object scan.ply --fingertip-radius 0.008\n  \
 regrasp object part.stl --scale 0.001 --repair -o clean.stl")]
 pub struct ObjectArgs {
@@ -37,7 +40,7 @@ pub struct ObjectArgs {
     /// Bodies that do not touch are fixed to each other all the same.
     #[arg(long)]
     pub assembly: bool,
-    /// Turn what is inside out.
+    /// Turn what is inside out, and make a closed surface of what is none.
     #[arg(long)]
     pub repair: bool,
     /// Write the mesh as it was understood, as a binary STL file in metres; `-` is standard output.
@@ -70,13 +73,10 @@ fn number(text: &str, low: f64, high: f64, what: &str) -> Result<f64, String> {
 pub fn run(args: &ObjectArgs) -> Result<(), Failure> {
     let wished = args.output.as_deref().map(|path| (path, Kind::Export));
     args.page.check(std::slice::from_ref(&args.file), wished.as_slice(), args.overwrite)?;
-    let mut mesh = load(args)?;
-    if args.repair {
-        mesh = outward_bodies(mesh);
-    }
-    let mesh = rigid_body(mesh, args.assembly).map_err(|fault| {
-        Failure::bad_input(format!("the mesh of `{}` is refused: {fault}", args.file.display()))
-    })?;
+    let (mesh, notes) = match understood(args) {
+        Err(refused) if args.repair => anew(args).ok_or(refused)?,
+        answer => answer?,
+    };
     let standard = args.output.as_deref().is_some_and(outputs::is_standard);
     if let Some(path) = &args.output {
         write(path, &mesh)?;
@@ -90,6 +90,7 @@ pub fn run(args: &ObjectArgs) -> Result<(), Failure> {
         roughness: roughness(&mesh, args.fingertip_radius),
         twin: automatic_twin(&mesh, args.fingertip_radius),
         mesh: &mesh,
+        notes,
         args,
     };
     if args.page.wanted() {
@@ -106,6 +107,27 @@ pub fn run(args: &ObjectArgs) -> Result<(), Failure> {
     if args.json { say_json(&understood.json()) } else { say(&printable(&understood.text())) }
 }
 
+/// The mesh as one body, and what was done for that.
+fn understood(args: &ObjectArgs) -> Result<(Mesh, Vec<String>), Failure> {
+    let read = load(args)?;
+    let mut notes = read.remarks();
+    let mesh = if args.repair { outward_bodies(read.mesh) } else { read.mesh };
+    let body = rigid_body(mesh, args.assembly).map_err(|fault| {
+        Failure::bad_input(format!("the mesh of `{}` is refused: {fault}", args.file.display()))
+    })?;
+    notes.extend(body.remarks());
+    Ok((body.mesh, notes))
+}
+
+/// A closed surface around the facets of a file that do not make one.
+fn anew(args: &ObjectArgs) -> Option<(Mesh, Vec<String>)> {
+    let (mut vertices, facets) = read_points(&args.file).ok()?;
+    vertices.iter_mut().for_each(|v| *v *= args.scale);
+    let remade = remake(&vertices, &facets)?;
+    let remark = remade.remark();
+    Some((remade.mesh, vec![remark]))
+}
+
 fn write(path: &Path, mesh: &Mesh) -> Result<(), Failure> {
     let bytes = regrasp::export::stl(mesh);
     if outputs::is_standard(path) {
@@ -115,14 +137,14 @@ fn write(path: &Path, mesh: &Mesh) -> Result<(), Failure> {
 }
 
 /// The mesh; `--repair` turns one round whose facets all look inward.
-fn load(args: &ObjectArgs) -> Result<Mesh, Failure> {
+fn load(args: &ObjectArgs) -> Result<ReadMesh, Failure> {
     let file = args.file.to_string_lossy().into_owned();
     let mut source = MeshSource { file: Some(file), scale: Some(args.scale), ..Default::default() };
-    let read = load_mesh(&source, Path::new(""), "object.shape");
+    let read = read_mesh(&source, Path::new(""), "object.shape");
     let inside_out = matches!(&read, Err(FormatError::FileMesh { source, .. }) if matches!(**source, MeshError::InsideOut { .. }));
     if inside_out && args.repair {
         source.flip = Some(true);
-        return load_mesh(&source, Path::new(""), "object.shape").map_err(Failure::bad_input);
+        return read_mesh(&source, Path::new(""), "object.shape").map_err(Failure::bad_input);
     }
     read.map_err(Failure::bad_input)
 }
@@ -136,6 +158,8 @@ struct Understood<'a> {
     mass: MassProperties,
     roughness: f64,
     twin: Option<Twin>,
+    /// What was done to the file's mesh.
+    notes: Vec<String>,
 }
 
 impl Understood<'_> {
@@ -167,6 +191,7 @@ impl Understood<'_> {
             "contact_surface": self.twin.as_ref().map(|twin| json!({
                 "facets": twin.mesh.facets().len(), "bound": twin.bound, "tolerance": twin.tolerance,
             })),
+            "notes": self.notes,
         })
     }
 
@@ -200,7 +225,7 @@ impl Understood<'_> {
             ("thinnest wall", format!("{wall:.3} mm, near {:.1}, {:.1}, {:.1} mm", at.x, at.y, at.z))
         }));
         facts.push(("contact surface", self.felt()));
-        facts.extend(self.note().map(|note| ("note", note)));
+        facts.extend(self.notes.iter().cloned().chain(self.note()).map(|note| ("note", note)));
         facts
     }
 

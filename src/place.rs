@@ -15,8 +15,11 @@ use std::time::Duration;
 const TRIES: usize = 12;
 /// How far (m) they lie from each other.
 const APART: f64 = 8e-3;
-/// How long one of them may take.
-const EACH: Duration = Duration::from_millis(1500);
+/// How long one of them may take, in the first round and in the second: most places that are any good are
+/// planned at once, and the others hold everything up.
+const ROUNDS: [Duration; 2] = [Duration::from_millis(250), Duration::from_millis(1000)];
+/// How long the plan that was found may take when it is made again as it will be by `regrasp plan`.
+const AGAIN: Duration = Duration::from_millis(3000);
 
 /// The first text that is planned, of those that `text` makes for each place, the best place first. `name` is
 /// what messages call the scenario; `folder` is where its files are.
@@ -32,19 +35,18 @@ pub fn that_plans(
     // Hand, object and plugins are made once; at each place only the object's poses are others.
     let moved = read(first)?;
     let Ok(setup) = Setup::without_ends(&moved, &moved.choices, registry) else { return Ok(None) };
-    for place in places {
-        let problem = shifted(&moved, place - first);
-        if !is_free(&setup, &problem) {
+    let tries = places.into_iter().map(|place| (place, shifted(&moved, place - first)));
+    let tries: Vec<_> = tries.filter(|(_, problem)| is_free(&setup, problem)).collect();
+    for (limit, (place, problem)) in ROUNDS.iter().flat_map(|limit| tries.iter().map(move |one| (limit, one)))
+    {
+        let options = Stopwatch::limited(*limit);
+        if !setup.run_problem(problem, &planner::solve, &options.options(0)).is_ok_and(is_solved) {
             continue;
         }
-        let options = Stopwatch::limited(EACH);
-        if !setup.run_problem(&problem, &planner::solve, &options.options(0)).is_ok_and(is_solved) {
-            continue;
-        }
-        let scenario = read(place)?;
+        let scenario = read(*place)?;
         let Ok(setup) = Setup::new(&scenario, &scenario.choices, registry) else { continue };
-        if setup.run(&Stopwatch::limited(EACH).options(0)).is_ok_and(is_solved) {
-            return Ok(Some(text(place)));
+        if setup.run(&Stopwatch::limited(AGAIN).options(0)).is_ok_and(is_solved) {
+            return Ok(Some(text(*place)));
         }
     }
     Ok(None)

@@ -1,7 +1,9 @@
 //! Closed triangle meshes with their topology.
 
+mod sides;
+
 use crate::{Mat3, Vec3};
-use std::collections::HashMap;
+use sides::{Sides, ends};
 use thiserror::Error;
 
 /// A closed, oriented, manifold triangle mesh with outward normals.
@@ -259,30 +261,33 @@ fn neighbors(
     facets: &[[u32; 3]],
     normals: &[Vec3],
 ) -> Result<Vec<[Neighbor; 3]>, MeshError> {
-    let mut owner: HashMap<(u32, u32), (u32, u8)> = HashMap::with_capacity(3 * facets.len());
     let end = |vertex: u32| -> [f64; 3] { vertices[vertex as usize].into() };
-    for (facet, corners) in facets.iter().enumerate() {
-        for k in 0..3 {
-            let (from, to) = (corners[k], corners[(k + 1) % 3]);
-            if owner.insert((from, to), (facet as u32, k as u8)).is_some() {
-                return Err(MeshError::NotManifold { from: end(from), to: end(to) });
-            }
-        }
+    let sides = Sides::new(vertices.len(), facets);
+    if let Some(side) = sides.first_doubled() {
+        let [from, to] = ends(facets, side);
+        return Err(MeshError::NotManifold { from: end(from), to: end(to) });
     }
+    let nobody = Neighbor { facet: u32::MAX, edge: 0, bend: 0.0 };
+    let mut all = vec![[nobody; 3]; facets.len()];
     let mut open = Vec::new();
-    let across = |(facet, corners): (usize, &[u32; 3])| {
-        std::array::from_fn(|k| {
-            let (from, to) = (corners[k], corners[(k + 1) % 3]);
-            let Some(&(other, edge)) = owner.get(&(to, from)) else {
-                open.push((from, to));
-                return Neighbor { facet: u32::MAX, edge: 0, bend: 0.0 };
-            };
-            let along = (vertices[to as usize] - vertices[from as usize]).normalize();
-            let (n, m) = (normals[facet], normals[other as usize]);
-            Neighbor { facet: other, edge, bend: n.cross(&m).dot(&along).atan2(n.dot(&m)) }
-        })
-    };
-    let all = facets.iter().enumerate().map(across).collect();
+    for side in 0..3 * facets.len() as u32 {
+        let [from, to] = ends(facets, side);
+        let Some(across) = sides.find(to, from) else {
+            open.push((from, to));
+            continue;
+        };
+        let bend = match across > side {
+            true => {
+                let along = (vertices[to as usize] - vertices[from as usize]).normalize();
+                let (n, m) = (normals[side as usize / 3], normals[across as usize / 3]);
+                n.cross(&m).dot(&along).atan2(n.dot(&m))
+            }
+            // Seen from the other side both factors change their signs.
+            false => all[across as usize / 3][across as usize % 3].bend,
+        };
+        let neighbor = Neighbor { facet: across / 3, edge: (across % 3) as u8, bend };
+        all[side as usize / 3][side as usize % 3] = neighbor;
+    }
     match open.first() {
         None => Ok(all),
         Some(&(from, to)) => Err(MeshError::Open { count: open.len(), from: end(from), to: end(to) }),

@@ -38,7 +38,7 @@ pub enum FormatError {
         reason: String,
     },
     /// A file whose mesh cannot be used.
-    #[error("`{key}`: the mesh of `{}` is refused: {source}", path.display())]
+    #[error("`{key}`: the mesh of `{}` is refused: {source}{}", path.display(), remedy(source))]
     FileMesh {
         /// The path of the key.
         key: String,
@@ -55,6 +55,20 @@ pub enum FormatError {
         /// What is wrong with the mesh, and the fix.
         source: MeshError,
     },
+}
+
+/// What helps beside the remedy that the fault names itself.
+fn remedy(fault: &MeshError) -> &'static str {
+    match fault {
+        MeshError::Open { .. }
+        | MeshError::TJunction { .. }
+        | MeshError::Seam { .. }
+        | MeshError::Duplicated { .. }
+        | MeshError::NotManifold { .. } => {
+            ", or let `regrasp object FILE --repair -o clean.stl` make a closed surface of it"
+        }
+        _ => "",
+    }
 }
 
 impl FormatError {

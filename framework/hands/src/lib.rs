@@ -42,6 +42,7 @@ mod tree;
 mod trim;
 
 pub use options::{HandOptions, JointChoice};
+pub use plausible::implausible_rates;
 pub use report::{HandReport, ReadHand};
 
 use fingers::Fingers;

@@ -3,7 +3,7 @@
 
 use crate::fingers::Fingers;
 use crate::tree::Tree;
-use regrasp_api::{HandDescription, Shape, Vec3};
+use regrasp_api::{HandDescription, JointDescription, JointKind, Shape, Vec3};
 use regrasp_formats::{Geometry, Link, RobotFault as Fault};
 
 /// Fingers reach no farther (m), and no less.
@@ -54,7 +54,7 @@ pub(crate) fn check(
         judge(length, typical, notes)?;
     }
     reach(hand)?;
-    rates(hand, notes);
+    notes.extend(rates(hand, |what| format!("`--{what} '*=…'` sets it (`joint` under `[hand]`)")));
     masses(tree, fingers, notes);
     Ok(())
 }
@@ -180,13 +180,19 @@ fn reach(hand: &HandDescription) -> Result<(), Fault> {
     Err(Fault::of_key("scale", message))
 }
 
-/// Efforts and velocities that no finger of this size has.
-fn rates(hand: &HandDescription, notes: &mut Vec<String>) {
+/// What a hand file says of efforts and velocities that no finger of this size has, for people.
+pub fn implausible_rates(hand: &HandDescription) -> Vec<String> {
+    rates(hand, |what| format!("`{what}` of that joint in the hand file sets it"))
+}
+
+/// Efforts and velocities that no finger of this size has; `remedy` says what sets one of them.
+fn rates(hand: &HandDescription, remedy: impl Fn(&str) -> String) -> Vec<String> {
     let (mut strong, mut fast, mut weak, mut slow) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for finger in &hand.finger {
         let lengths: Vec<f64> =
             finger.joint.iter().map(|joint| Vec3::from(joint.origin.position).norm()).collect();
-        for (i, joint) in finger.joint.iter().enumerate() {
+        let turning = |(_, joint): &(usize, &JointDescription)| joint.kind == JointKind::Revolute;
+        for (i, joint) in finger.joint.iter().enumerate().filter(turning) {
             let arm = lengths[i + 1..].iter().sum::<f64>() + Vec3::from(finger.tip).norm();
             let force = joint.effort / arm.max(0.02);
             let entry = |value: f64| (joint.name.clone(), value);
@@ -202,22 +208,29 @@ fn rates(hand: &HandDescription, notes: &mut Vec<String>) {
             }
         }
     }
-    tell(&strong, "effort", "N·m", "no finger of this size is as strong", notes);
-    tell(&weak, "effort", "N·m", "too weak to hold anything", notes);
-    tell(&fast, "velocity", "rad/s", "no finger is as fast", notes);
-    tell(&slow, "velocity", "rad/s", "too slow to be meant", notes);
+    let told = [
+        tell(&strong, ("effort", "N·m", "no finger of this size is as strong"), &remedy),
+        tell(&weak, ("effort", "N·m", "too weak to hold anything"), &remedy),
+        tell(&fast, ("velocity", "rad/s", "no finger is as fast"), &remedy),
+        tell(&slow, ("velocity", "rad/s", "too slow to be meant"), &remedy),
+    ];
+    told.into_iter().flatten().collect()
 }
 
-fn tell(joints: &[(String, f64)], what: &str, unit: &str, why: &str, notes: &mut Vec<String>) {
-    let Some((first, value)) = joints.first() else { return };
+fn tell(
+    joints: &[(String, f64)],
+    (what, unit, why): (&str, &str, &str),
+    remedy: impl Fn(&str) -> String,
+) -> Option<String> {
+    let (first, value) = joints.first()?;
     let others = match joints.len() {
         1 => String::new(),
         count => format!(" and {} more joints", count - 1),
     };
-    notes.push(format!(
-        "joint `{first}`{others}: {what} {value} {unit}, {why}; it is taken as it is: `--{what} '*=…'` sets \
-         it (`joint` under `[hand]`)"
-    ));
+    // Large and small ones with an exponent: nobody counts zeros.
+    let value = if (1e-3..1e5).contains(value) { value.to_string() } else { format!("{value:e}") };
+    let remedy = remedy(what);
+    Some(format!("joint `{first}`{others}: {what} {value} {unit}, {why}; it is taken as it is: {remedy}"))
 }
 
 fn masses(tree: &Tree<'_>, fingers: &Fingers, notes: &mut Vec<String>) {

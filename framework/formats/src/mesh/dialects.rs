@@ -191,7 +191,7 @@ fn what_was_done_to_close_a_mesh_is_said() {
     let mut corners = CORNERS.to_vec();
     corners.push([0.02, 1e-7, 0.0]);
     let seam = read(obj(&corners, &[[0, 2, 4], [0, 1, 3], [0, 3, 2], [1, 2, 3]]));
-    assert!(seam.welded > 1e-7 && seam.remarks()[0].contains("made one"), "{seam:?}");
+    assert!(seam.welded > 1e-7 && seam.remarks()[0].contains("a vertex became one with another"), "{seam:?}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::Raw;
 use regrasp_api::Vec3;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A height below this part of the longest edge is rounding, not a facet: what [`regrasp_api::Mesh`] refuses
 /// as having no area.
@@ -46,10 +46,7 @@ fn corners(vertices: &[Vec3], facet: [u32; 3]) -> Option<[Vec3; 3]> {
 
 /// Takes flat facets out; returns how many.
 fn split_beyond(vertices: &[Vec3], facets: &mut Vec<[u32; 3]>, flat: &[usize]) -> usize {
-    let mut owner: HashMap<(u32, u32), usize> = HashMap::with_capacity(3 * facets.len());
-    for (i, facet) in facets.iter().enumerate() {
-        owner.extend((0..3).map(|k| ((facet[k], facet[(k + 1) % 3]), i)));
-    }
+    let owner = beyond_longest(vertices, facets, flat);
     let mut touched = vec![false; facets.len()];
     let mut gone = vec![false; facets.len()];
     let mut count = 0;
@@ -77,6 +74,25 @@ fn split_beyond(vertices: &[Vec3], facets: &mut Vec<[u32; 3]>, flat: &[usize]) -
     let mut keep = gone.iter().map(|&gone| !gone);
     facets.retain(|_| keep.next().unwrap_or(true));
     count
+}
+
+/// The facets beyond the longest sides of flat ones, by the sides as they run there.
+fn beyond_longest(vertices: &[Vec3], facets: &[[u32; 3]], flat: &[usize]) -> HashMap<(u32, u32), usize> {
+    let longest = flat.iter().filter_map(|&index| longest_first(vertices, facets[index]));
+    let wanted: HashSet<(u32, u32)> = longest.map(|[u, v, _]| (v, u)).collect();
+    // Flat facets are few: most sides begin where none that is wanted does.
+    let mut begins = vec![false; vertices.len()];
+    wanted.iter().for_each(|side| begins[side.0 as usize] = true);
+    let mut owner = HashMap::with_capacity(wanted.len());
+    for (i, facet) in facets.iter().enumerate() {
+        for k in 0..3 {
+            let side = (facet[k], facet[(k + 1) % 3]);
+            if begins.get(side.0 as usize) == Some(&true) && wanted.contains(&side) {
+                owner.insert(side, i);
+            }
+        }
+    }
+    owner
 }
 
 /// The corners from the longest side on: its two ends, and the corner between them.

@@ -40,6 +40,8 @@ pub struct ReadMesh {
     pub dropped: usize,
     /// How far apart (m) vertices could be that were made one: 0 where only equal ones were.
     pub welded: f64,
+    /// How many vertices went into others that were not equal.
+    pub merged: usize,
 }
 
 impl ReadMesh {
@@ -51,11 +53,15 @@ impl ReadMesh {
             1 => remarks.push("a facet without area was left out; the rest is closed".into()),
             count => remarks.push(format!("{count} facets without area were left out; the rest is closed")),
         }
-        if self.welded > 0.0 {
-            let within = self.welded;
-            remarks.push(format!(
-                "vertices within {within:.1e} m of each other were made one: only that closes the mesh"
-            ));
+        let within = self.welded;
+        match self.merged {
+            0 => {}
+            1 => remarks.push(format!(
+                "a vertex became one with another within {within:.1e} m: only that closes the mesh"
+            )),
+            count => remarks.push(format!(
+                "{count} vertices became one with others within {within:.1e} m: only that closes the mesh"
+            )),
         }
         remarks
     }
@@ -77,7 +83,7 @@ pub fn read_mesh(source: &MeshSource, base: &Path, key: &str) -> Result<ReadMesh
         Some(file) if !source.is_written_out() => from_file(source, &base.join(file), key),
         _ => {
             let mesh = source.mesh().map_err(|error| FormatError::source(key, None, error))?;
-            Ok(ReadMesh { mesh, dropped: 0, welded: 0.0 })
+            Ok(ReadMesh { mesh, dropped: 0, welded: 0.0, merged: 0 })
         }
     }
 }
@@ -89,7 +95,7 @@ fn from_file(source: &MeshSource, path: &Path, key: &str) -> Result<ReadMesh, Fo
     check_size(&raw.0, scale).map_err(fail)?;
     let ((vertices, facets), dropped) = heal::healed(raw.clone());
     let error = match source.adjusted(vertices.clone(), facets.clone()) {
-        Ok(mesh) => return Ok(ReadMesh { mesh, dropped, welded: 0.0 }),
+        Ok(mesh) => return Ok(ReadMesh { mesh, dropped, welded: 0.0, merged: 0 }),
         Err(error) => error,
     };
     let MeshSourceError::Mesh(fault) = error else { return Err(FormatError::source(key, Some(path), error)) };
@@ -134,9 +140,11 @@ fn nearly_closed(source: &MeshSource, raw: &Raw) -> Option<ReadMesh> {
     }
     [0.1 * weld::NEARLY_EQUAL, weld::NEARLY_EQUAL].into_iter().find_map(|part| {
         let within = part * size;
-        let ((vertices, facets), dropped) = heal::healed(weld::welded_within(raw.clone(), within));
+        let near = weld::welded_within(raw.clone(), within);
+        let merged = raw.0.len() - near.0.len();
+        let ((vertices, facets), dropped) = heal::healed(near);
         let mesh = source.adjusted(vertices, facets).ok()?;
-        Some(ReadMesh { mesh, dropped, welded: within * source.scale.unwrap_or(1.0) })
+        Some(ReadMesh { mesh, dropped, welded: within * source.scale.unwrap_or(1.0), merged })
     })
 }
 

@@ -16,6 +16,10 @@ pub(super) fn triangulate(corners: &[u32], vertices: &[Vec3], facets: &mut Vec<[
     if corners.len() < 3 {
         return;
     }
+    if let Ok(facet) = corners.try_into() {
+        facets.push(facet);
+        return;
+    }
     let at = |index: u32| vertices.get(index as usize).copied().unwrap_or_default();
     let mut rest = corners.to_vec();
     let normal = mean_normal(&rest, at);

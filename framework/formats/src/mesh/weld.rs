@@ -13,21 +13,64 @@ pub(super) const NEARLY_EQUAL: f64 = 1e-5;
 /// equal coordinates are merged: a tolerance could close what is open. Indices out of range are left for the
 /// mesh to refuse.
 pub(super) fn welded((vertices, mut facets): Raw) -> Raw {
-    let mut place = HashMap::with_capacity(vertices.len());
+    let first = firsts(&vertices);
+    let mut place = vec![u32::MAX; vertices.len()];
     let mut kept: Vec<Vec3> = Vec::new();
     for index in facets.iter_mut().flatten() {
-        let Some(&vertex) = vertices.get(*index as usize) else {
+        let Some(&name) = first.get(*index as usize) else {
             *index = u32::MAX;
             continue;
         };
-        // Adding 0 turns -0 into 0.
-        let bits: [u64; 3] = vertex.map(|x| (x + 0.0).to_bits()).into();
-        *index = *place.entry(bits).or_insert_with(|| {
-            kept.push(vertex);
-            kept.len() as u32 - 1
-        });
+        let place = &mut place[name as usize];
+        if *place == u32::MAX {
+            *place = kept.len() as u32;
+            kept.push(vertices[*index as usize]);
+        }
+        *index = *place;
     }
     (kept, facets)
+}
+
+/// The first vertex at the place of each.
+///
+/// Vertices are dealt out to about as many buckets as there are vertices, and sorted within each: linear as a
+/// rule, and no worse than sorting all for a file that was made to fill one bucket.
+fn firsts(vertices: &[Vec3]) -> Vec<u32> {
+    let shift = 63 - vertices.len().max(2).ilog2();
+    let bucket = |v: &Vec3| (mixed(bits(v)) >> shift) as usize;
+    let mut begins = vec![0_u32; (1 << (64 - shift)) + 1];
+    vertices.iter().for_each(|v| begins[bucket(v) + 1] += 1);
+    for i in 1..begins.len() {
+        begins[i] += begins[i - 1];
+    }
+    let mut next = begins.clone();
+    let mut order = vec![0; vertices.len()];
+    for (index, v) in vertices.iter().enumerate() {
+        let place = &mut next[bucket(v)];
+        order[*place as usize] = index as u32;
+        *place += 1;
+    }
+    let at = |index: u32| bits(&vertices[index as usize]);
+    let mut first: Vec<u32> = (0..vertices.len() as u32).collect();
+    for ends in begins.windows(2).filter(|ends| ends[1] - ends[0] > 1) {
+        let there = &mut order[ends[0] as usize..ends[1] as usize];
+        there.sort_unstable_by_key(|&index| (at(index), index));
+        for pair in there.windows(2).filter(|pair| at(pair[0]) == at(pair[1])) {
+            first[pair[1] as usize] = first[pair[0] as usize];
+        }
+    }
+    first
+}
+
+/// A place by its bits; adding 0 turns -0 into 0.
+fn bits(vertex: &Vec3) -> [u64; 3] {
+    vertex.map(|x| (x + 0.0).to_bits()).into()
+}
+
+/// A number whose upper bits depend on all of those given.
+fn mixed(bits: [u64; 3]) -> u64 {
+    bits.into_iter()
+        .fold(0, |hash: u64, word| (hash.rotate_left(29) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15))
 }
 
 /// The same with vertices at most `tolerance` apart merged too, each into the first such one.

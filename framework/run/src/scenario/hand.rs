@@ -4,7 +4,7 @@ use super::document::{Document, key_path};
 use super::{HANDS, HandChoice, JointTable, Place, ScenarioError, find, read, unknown};
 use regrasp_api::{HandDescription, Refuse};
 use regrasp_formats::{RobotFileError, embed_hand};
-use regrasp_hands::{HandOptions, HandReport, JointChoice, ReadHand, read_hand};
+use regrasp_hands::{HandOptions, HandReport, JointChoice, ReadHand, implausible_rates, read_hand};
 use regrasp_world::ChainHand;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -58,7 +58,11 @@ pub(super) fn load(
         (None, Some(file), None) => {
             let path = folder.join(file);
             let document = Document::parse(&path.display().to_string(), &read(&path)?)?;
-            described(document, path.parent().unwrap_or(Path::new("")))
+            let mut loaded = described(document, path.parent().unwrap_or(Path::new("")))?;
+            let file = path.display();
+            let unlikely = implausible_rates(&loaded.description);
+            loaded.remarks.extend(unlikely.into_iter().map(|remark| format!("{file}: {remark}")));
+            Ok(loaded)
         }
         (None, None, Some(file)) => from_robot(scenario, choice, &folder.join(file), folder),
         _ => {

@@ -26,10 +26,10 @@ use regrasp_api::{
     Hand, HandDescription, MeshSource, ObjectDescription, ObjectModel, ObjectShape, Problem, Refuse,
     SettingsError, Slot, Step, near,
 };
-use regrasp_formats::{embed_obstacles, load_mesh};
+use regrasp_formats::{embed_obstacles, read_mesh};
 use regrasp_host::{Choices, HostError, Registry};
 use regrasp_world::{
-    ChainHand, WorldError, check_problem, check_units, load_object, object_of_mesh, rigid_body,
+    ChainHand, WorldError, check_problem, check_size, check_units, load_object, object_of_mesh, rigid_body,
 };
 use serde_json::{Value, json};
 use std::io::ErrorKind;
@@ -150,8 +150,10 @@ fn from_document(
     let mut problem = problem(&content, description);
     check_problem(&problem).map_err(|error| document.refused(&error))?;
     embed_obstacles(&mut problem.obstacle, folder).map_err(|error| document.refused(&error))?;
-    let mut object = object(&document, &mut problem.object, folder)?;
+    let mut object = object(&document, &mut problem.object, folder, &mut remarks)?;
     check_units(&hand, &object, &content.object.shape).map_err(|error| document.refused(&error))?;
+    let size = check_size(&hand, &object, &content.object.shape);
+    remarks.extend(size.map_err(|error| document.refused(&error))?);
     remarks.extend(contact_surface::settle(&mut object, &content.object, hand.fingertip_radius(), folder));
     Ok(Scenario {
         name: content.name.clone().unwrap_or_else(|| stem(file)),
@@ -172,15 +174,19 @@ fn object(
     document: &Document,
     description: &mut ObjectDescription,
     folder: &Path,
+    remarks: &mut Vec<String>,
 ) -> Result<ObjectModel, ScenarioError> {
     let ObjectShape::Mesh(source) = &mut description.shape else {
         return load_object(description).map_err(|error| document.refused(&error));
     };
-    let mesh = load_mesh(source, folder, "object.shape").map_err(|error| document.refused(&error))?;
-    let mesh = rigid_body(mesh, description.assembly)
+    let read = read_mesh(source, folder, "object.shape").map_err(|error| document.refused(&error))?;
+    let mut done = read.remarks();
+    let body = rigid_body(read.mesh, description.assembly)
         .map_err(|fault| document.refused(&WorldError::Body { key: "object.shape".into(), fault }))?;
-    *source = MeshSource::of(&mesh);
-    object_of_mesh(description, mesh).map_err(|error| document.refused(&error))
+    done.extend(body.remarks());
+    remarks.extend(done.into_iter().map(|remark| format!("the object's mesh: {remark}")));
+    *source = MeshSource::of(&body.mesh);
+    object_of_mesh(description, body.mesh).map_err(|error| document.refused(&error))
 }
 
 fn stem(file: &str) -> String {

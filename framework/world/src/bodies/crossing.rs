@@ -3,34 +3,102 @@
 use super::BodyFault;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
-use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use regrasp_api::{Mesh, Vec3};
 use std::f64::consts::PI;
 
 /// Facets that reach through each other by less than this part of the mesh's size touch.
 const DEEP: f64 = 1e-6;
+/// The line that two facets share is the same for both to so many times that.
+const BESIDE: f64 = 20.0;
 /// Two facets that meet at an angle (rad) below this lie back to back.
 const FOLDED: f64 = 1e-6;
 
+/// Pairs of facets that are looked at together: as many as fit into little memory.
+const BATCH: usize = 1 << 20;
+/// Fewer pairs are no work for a second thread.
+const FEW: usize = 20_000;
+
 /// Refuses a mesh whose surfaces cross.
 pub(super) fn check(mesh: &Mesh, part_of: &[u32], count: usize) -> Result<(), BodyFault> {
-    let (mut crossings, mut first) = (0, None);
-    let deep = DEEP * mesh.radius();
-    let boxes: Vec<Aabb> = (0..mesh.facets().len() as u32).map(|facet| bounds(mesh, facet)).collect();
-    let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
-    for (facet, around) in (0u32..).zip(&boxes) {
-        folded(mesh, facet)?;
-        for other in tree.intersect_aabb(around).filter(|&other| other > facet) {
-            let Some(at) = crossing(mesh, facet, other, deep) else { continue };
-            let [a, b] = [facet, other].map(|f| part_of[f as usize] as usize + 1);
-            if a != b {
-                return Err(BodyFault::Overlap { first: a.min(b), second: a.max(b), count, at: at.into() });
+    let facets = 0..mesh.facets().len() as u32;
+    facets.clone().try_for_each(|facet| folded(mesh, facet))?;
+    let tree = Bvh::from_iter(BvhBuildStrategy::Binned, facets.map(|f| (f as usize, bounds(mesh, f))));
+    let mut found =
+        Found { deep: DEEP * mesh.radius(), mesh, part_of, crossings: 0, first: None, overlap: None };
+    let mut batch = Vec::with_capacity(BATCH.min(16 * mesh.facets().len()));
+    tree.traverse_bvtt_single_tree::<false>(&mut BvhWorkspace::default(), &mut |a, b| {
+        batch.push((a.min(b), a.max(b)));
+        if batch.len() == BATCH {
+            found.look(&batch);
+            batch.clear();
+        }
+    });
+    found.look(&batch);
+    if let Some((pair, at)) = found.overlap {
+        let [a, b] = found.parts(pair).map(|part| part as usize + 1);
+        return Err(BodyFault::Overlap { first: a.min(b), second: a.max(b), count, at: at.into() });
+    }
+    let first = found.first.map(|(_, at)| BodyFault::Crossing { count: found.crossings, at: at.into() });
+    first.map_or(Ok(()), Err)
+}
+
+/// Two facets, that of the smaller number first.
+type Pair = (u32, u32);
+
+/// What was found so far; of several places the one of the first pair, in whatever order they come.
+#[derive(Clone, Copy)]
+struct Found<'a> {
+    mesh: &'a Mesh,
+    part_of: &'a [u32],
+    deep: f64,
+    /// How often facets of one body cross, and where first.
+    crossings: usize,
+    first: Option<(Pair, Vec3)>,
+    /// Where facets of different bodies do.
+    overlap: Option<(Pair, Vec3)>,
+}
+
+impl Found<'_> {
+    fn parts(&self, pair: Pair) -> [u32; 2] {
+        [self.part_of[pair.0 as usize], self.part_of[pair.1 as usize]]
+    }
+
+    /// Looks at pairs of facets whose boxes meet.
+    fn look(&mut self, pairs: &[Pair]) {
+        if pairs.len() < FEW {
+            return self.look_at(pairs);
+        }
+        let (some, others) = pairs.split_at(pairs.len() / 2);
+        let mut other = Self { crossings: 0, first: None, overlap: None, ..*self };
+        std::thread::scope(|scope| {
+            scope.spawn(|| other.look_at(others));
+            self.look_at(some);
+        });
+        self.crossings += other.crossings;
+        self.first = earlier(self.first, other.first);
+        self.overlap = earlier(self.overlap, other.overlap);
+    }
+
+    fn look_at(&mut self, pairs: &[Pair]) {
+        for &pair in pairs {
+            let Some(at) = crossing(self.mesh, pair.0, pair.1, self.deep) else { continue };
+            let [a, b] = self.parts(pair);
+            if a == b {
+                self.crossings += 1;
+                self.first = earlier(self.first, Some((pair, at)));
+            } else {
+                self.overlap = earlier(self.overlap, Some((pair, at)));
             }
-            crossings += 1;
-            first.get_or_insert(at);
         }
     }
-    first.map_or(Ok(()), |at| Err(BodyFault::Crossing { count: crossings, at: at.into() }))
+}
+
+fn earlier(a: Option<(Pair, Vec3)>, b: Option<(Pair, Vec3)>) -> Option<(Pair, Vec3)> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if b.0 < a.0 { b } else { a }),
+        (a, b) => a.or(b),
+    }
 }
 
 fn bounds(mesh: &Mesh, facet: u32) -> Aabb {
@@ -58,6 +126,12 @@ fn crossing(mesh: &Mesh, a: u32, b: u32, deep: f64) -> Option<Vec3> {
         return None;
     }
     let along = (q - p) / length;
+    // They do not where a plane hardly leans from the other, and a corner that counts as on it is far from
+    // the line: then the facets lie side by side.
+    let beside = |x: &Vec3| along.cross(&(x - p)).norm();
+    if beside(&r).max(beside(&s)) > BESIDE * deep {
+        return None;
+    }
     let (r, s) = ((r - p).dot(&along), (s - p).dot(&along));
     let (from, to) = (r.min(s).max(0.0), r.max(s).min(length));
     (to - from > deep).then(|| p + along * (0.5 * (from + to)))

@@ -43,7 +43,10 @@ pub enum BodyFault {
         at: [f64; 3],
     },
     /// A surface crosses itself.
-    #[error("the surface crosses itself in {count} places, the first near {at:.4?}; repair the mesh there")]
+    #[error(
+        "the surface crosses itself in {count} places, the first near {at:.4?}; repair the mesh there, or let \
+         `regrasp object FILE --repair -o clean.stl` make a closed surface of it"
+    )]
     Crossing {
         /// How many pairs of facets cross.
         count: usize,
@@ -52,7 +55,8 @@ pub enum BodyFault {
     },
     /// Two facets lie back to back.
     #[error(
-        "the surface folds back on itself near {at:.4?}, a wall without thickness; remove it or give it some"
+        "the surface folds back on itself near {at:.4?}, a wall without thickness; remove it or give it some, \
+         or let `regrasp object FILE --repair -o clean.stl` make a closed surface of it"
     )]
     Fold {
         /// Where (m).
@@ -80,23 +84,65 @@ struct Part {
     /// Volume (m³); negative where the facets look inward.
     volume: f64,
     at: Vec3,
+    /// Points all over it.
+    samples: Vec<Vec3>,
     lower: Vec3,
     upper: Vec3,
 }
 
+/// About as many points tell where a surface lies that may touch others.
+const SAMPLES: usize = 16;
+/// A winding number this near to a whole one is no matter of touching.
+const WHOLE: f64 = 0.01;
+
+/// A mesh as one rigid object, and what was done for that.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidBody {
+    /// The mesh (m).
+    pub mesh: Mesh,
+    /// How many bodies that overlap or touch were united; 0 where none were.
+    pub united: usize,
+    /// How many bodies within others were left out.
+    pub within: usize,
+}
+
+impl RigidBody {
+    /// What was done, for people; nothing where nothing was.
+    pub fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if self.united > 0 {
+            let united = self.united;
+            remarks.push(format!(
+                "{united} bodies that overlap or touch were united; what they share counts once"
+            ));
+        }
+        match self.within {
+            0 => {}
+            1 => remarks.push("a body within another was left out: it is part of it".into()),
+            within => {
+                remarks.push(format!("{within} bodies within others were left out: they are part of them"))
+            }
+        }
+        remarks
+    }
+}
+
 /// The mesh as one rigid object, or why it is none.
 ///
-/// Bodies that overlap are united. A body within another is part of it and left out; a surface that looks
+/// Bodies that overlap, or touch by faces, are united. A body within another is part of it and left out; a surface that looks
 /// inward within a body is a hollow. Several bodies that do not touch pass as an `assembly` only. Cost: about
 /// 3 µs a facet.
-pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<Mesh, BodyFault> {
+pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<RigidBody, BodyFault> {
     let (parts, part_of) = parts(&mesh);
     match crossing::check(&mesh, &part_of, parts.len()) {
         Err(fault @ BodyFault::Overlap { first, second, .. }) => {
             let inward = [first, second].into_iter().find(|&body| parts[body - 1].volume < 0.0);
             return match inward {
                 Some(body) => Err(inside_out(&parts, body - 1)),
-                None => union::united(&mesh, &parts, is_sound).ok_or(fault),
+                None => match union::united(&mesh, &parts, is_sound) {
+                    Some(mesh) => Ok(RigidBody { mesh, united: parts.len(), within: 0 }),
+                    None => Err(fault),
+                },
             };
         }
         checked => checked?,
@@ -104,8 +150,7 @@ pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<Mesh, BodyFault> {
     let mut kept = vec![true; parts.len()];
     let mut apart = Vec::new();
     for (i, part) in parts.iter().enumerate() {
-        let around: i64 =
-            (0..parts.len()).filter(|&j| j != i).map(|j| turns(&mesh, &parts[j], &part.at)).sum();
+        let around: i64 = (0..parts.len()).filter(|&j| j != i).map(|j| turns(&mesh, &parts[j], part)).sum();
         match (part.volume > 0.0, around > 0) {
             (true, true) => kept[i] = false,
             (true, false) => apart.push(i),
@@ -114,6 +159,9 @@ pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<Mesh, BodyFault> {
         }
     }
     if let (Some(&second), false) = (apart.get(1), assembly) {
+        if let Some(mesh) = union::joined(&mesh, &parts, is_sound) {
+            return Ok(RigidBody { mesh, united: parts.len(), within: 0 });
+        }
         let second = &parts[second];
         return Err(BodyFault::Apart {
             count: apart.len(),
@@ -121,12 +169,14 @@ pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<Mesh, BodyFault> {
             at: second.at.into(),
         });
     }
-    if kept.iter().all(|&kept| kept) {
-        return Ok(mesh);
+    let within = kept.iter().filter(|&&kept| !kept).count();
+    if within == 0 {
+        return Ok(RigidBody { mesh, united: 0, within });
     }
     let facets = mesh.facets().iter().zip(&part_of).filter(|(_, part)| kept[**part as usize]);
     let facets: Vec<[u32; 3]> = facets.map(|(facet, _)| *facet).collect();
-    Ok(Mesh::new(mesh.vertices().to_vec(), facets).unwrap_or(mesh))
+    let mesh = Mesh::new(mesh.vertices().to_vec(), facets).unwrap_or(mesh);
+    Ok(RigidBody { mesh, united: 0, within })
 }
 
 fn inside_out(parts: &[Part], i: usize) -> BodyFault {
@@ -145,8 +195,7 @@ fn is_sound(mesh: &Mesh) -> bool {
 pub fn outward_bodies(mesh: Mesh) -> Mesh {
     let (parts, part_of) = parts(&mesh);
     let inward = |i: usize| {
-        let around =
-            (0..parts.len()).filter(|&j| j != i).map(|j| turns(&mesh, &parts[j], &parts[i].at).abs());
+        let around = (0..parts.len()).filter(|&j| j != i).map(|j| turns(&mesh, &parts[j], &parts[i]).abs());
         parts[i].volume < 0.0 && around.sum::<i64>() == 0
     };
     let inward: Vec<bool> = (0..parts.len()).map(inward).collect();
@@ -156,6 +205,11 @@ pub fn outward_bodies(mesh: Mesh) -> Mesh {
     let turned = |(f, part): (&[u32; 3], &u32)| if inward[*part as usize] { [f[0], f[2], f[1]] } else { *f };
     let facets = mesh.facets().iter().zip(&part_of).map(turned).collect();
     Mesh::new(mesh.vertices().to_vec(), facets).unwrap_or(mesh)
+}
+
+/// The volume (m³; negative where it looks inward) and the facets of each connected surface.
+pub(crate) fn facets_of_bodies(mesh: &Mesh) -> Vec<(f64, Vec<u32>)> {
+    parts(mesh).0.into_iter().map(|part| (part.volume, part.facets)).collect()
 }
 
 /// How many connected surfaces a mesh has.
@@ -200,25 +254,46 @@ fn part(mesh: &Mesh, facets: Vec<u32>) -> Part {
             (lower, upper) = (lower.inf(&corner), upper.sup(&corner));
         }
     }
-    Part { facets, volume, at, lower, upper }
+    let middle = |&facet: &u32| mesh.corners(facet).iter().sum::<Vec3>() / 3.0;
+    let samples = facets.iter().step_by(facets.len().div_ceil(SAMPLES)).map(middle).collect();
+    Part { facets, volume, at, samples, lower, upper }
 }
 
-/// How often a surface winds around a point: 1 within a body, -1 within one that is inside out.
+/// How often a surface winds around another that does not cross it: 1 around one within a body, -1 within a
+/// body that is inside out.
+///
+/// Where the two touch, points of the one lie on the other, and tell nothing: another point is asked.
+fn turns(mesh: &Mesh, part: &Part, other: &Part) -> i64 {
+    let is_in_box = |p: &Vec3| (0..3).all(|k| p[k] >= part.lower[k] && p[k] <= part.upper[k]);
+    if !other.samples.iter().all(is_in_box) {
+        return 0;
+    }
+    let off = |winding: f64| (winding - winding.round()).abs();
+    let mut best = f64::NAN;
+    for p in &other.samples {
+        let winding = winding(mesh, part, p);
+        if best.is_nan() || off(winding) < off(best) {
+            best = winding;
+        }
+        if off(best) < WHOLE {
+            break;
+        }
+    }
+    best.round() as i64
+}
+
+/// How often a surface winds around a point.
 ///
 /// The sum of the solid angles of its facets (van Oosterom and Strackee, "The solid angle of a plane
 /// triangle", IEEE Trans. Biomed. Eng. 1983).
-fn turns(mesh: &Mesh, part: &Part, p: &Vec3) -> i64 {
-    if (0..3).any(|k| p[k] < part.lower[k] || p[k] > part.upper[k]) {
-        return 0;
-    }
+fn winding(mesh: &Mesh, part: &Part, p: &Vec3) -> f64 {
     let angle = |&facet: &u32| {
         let [a, b, c] = mesh.corners(facet).map(|corner| corner - p);
         let (x, y, z) = (a.norm(), b.norm(), c.norm());
         let below = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
         2.0 * a.dot(&b.cross(&c)).atan2(below)
     };
-    let sum: f64 = part.facets.iter().map(angle).sum();
-    (sum / (4.0 * std::f64::consts::PI)).round() as i64
+    part.facets.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
 #[cfg(test)]

@@ -21,6 +21,22 @@ pub(super) fn united(mesh: &Mesh, parts: &[Part], is_sound: impl Fn(&Mesh) -> bo
     SHIFTS.iter().find_map(made)
 }
 
+/// The union of bodies that do not overlap, where they touch by faces and so become one piece; `None` where
+/// they do not.
+pub(super) fn joined(mesh: &Mesh, parts: &[Part], is_sound: impl Fn(&Mesh) -> bool) -> Option<Mesh> {
+    let margin = 1e-9 * mesh.radius();
+    let meet = |a: &Part, b: &Part| {
+        (0..3).all(|k| a.lower[k] <= b.upper[k] + margin && b.lower[k] <= a.upper[k] + margin)
+    };
+    // A body that no other one's box meets stays apart.
+    let meets_one = |i: usize| (0..parts.len()).any(|j| j != i && meet(&parts[i], &parts[j]));
+    let may_touch = parts.len() <= MANY && (0..parts.len()).all(meets_one);
+    let volume: f64 = parts.iter().map(|part| part.volume).sum();
+    // They share nothing: a union of another volume is none.
+    let is_whole = |union: &Mesh| (union.mass_properties().volume - volume).abs() < 1e-6 * volume;
+    may_touch.then(|| union(mesh, parts, 0.0)).flatten().filter(is_whole).filter(is_sound)
+}
+
 /// The union of bodies of which each is moved by a little (m) from the one before.
 fn union(mesh: &Mesh, parts: &[Part], shift: f64) -> Option<Mesh> {
     if parts.len() > MANY || parts.iter().any(|part| part.volume <= 0.0) {

@@ -1,8 +1,10 @@
 //! A whole problem, checked and prepared: hand, object, clearance, start and goals.
 
 mod check;
+mod size;
 
 pub use check::{check_limits, check_problem, check_units};
+pub use size::check_size;
 
 use crate::clearance::SceneClearance;
 use crate::error::WorldError;
@@ -41,6 +43,7 @@ impl World {
         let hand = Arc::new(ChainHand::new(problem.hand.clone())?);
         let object = load_object(&problem.object)?;
         check_units(&hand, &object, &problem.object.shape)?;
+        check_size(&hand, &object, &problem.object.shape)?;
         let mut poses = check::poses(problem)?;
         let workspace = problem.sampling_box(&poses);
         let start = poses.remove(0);

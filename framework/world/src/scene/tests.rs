@@ -108,6 +108,28 @@ fn every_fault_is_refused_by_its_key() {
     }
 }
 
+#[test]
+fn sizes_that_no_grasp_fits_are_told_with_the_scale_that_does() {
+    let hand = ChainHand::new(four_finger()).unwrap();
+    let told = |shape: ObjectShape| {
+        let description = ObjectDescription { shape, ..problem().object };
+        check_size(&hand, &load_object(&description).unwrap(), &description.shape)
+    };
+    assert_eq!(told(ball(0.03)), Ok(None));
+    assert_eq!(told(ball(0.08)), Ok(None));
+    // A sheet is wide, and thin enough to be held.
+    assert_eq!(told(ObjectShape::Cuboid { size: [0.6, 0.6, 0.02] }), Ok(None));
+    let large = told(ball(0.3)).unwrap().unwrap();
+    assert!(large.contains("597 mm wide at its narrowest"), "{large}");
+    assert!(large.contains("multiplying its lengths by 0.09"), "{large}");
+    let small = told(ball(0.006)).unwrap().unwrap();
+    assert!(small.contains("less than a fingertip is wide (20.0 mm)"), "{small}");
+    let message = told(ball(0.0008)).unwrap_err().to_string();
+    assert!(message.contains("no three of them can touch it at once"), "{message}");
+    // Three balls of 10 mm leave room for one of 1.547 mm; its box is larger.
+    assert!(told(ball(0.00155)).is_ok());
+}
+
 fn half_space(normal: [f64; 3]) -> Shape {
     Shape::HalfSpace { normal, offset: 0.0 }
 }

@@ -69,6 +69,14 @@ pub fn twin_within(mesh: &Mesh, radius: f64, tolerance: f64) -> Option<Twin> {
     hull::within(mesh, &touch, tolerance).or_else(|| dented(mesh, &touch, tolerance))
 }
 
+/// The same surface by fewer facets, within a tolerance (m); `None` where that is no closed surface.
+pub(crate) fn coarser(mesh: &Mesh, tolerance: f64) -> Option<Mesh> {
+    let mut surface = editable::Editable::new(mesh);
+    let touch = Touch::new(mesh, mesh.radius() / 6.0);
+    collapse::collapse(&mut surface, mesh, &touch, tolerance);
+    surface.mesh()
+}
+
 /// A twin that keeps the wider dents.
 fn dented(mesh: &Mesh, touch: &Touch, tolerance: f64) -> Option<Twin> {
     // The changes are judged one by one; where their sum goes too far, a smaller share of the tolerance is

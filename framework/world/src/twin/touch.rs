@@ -13,8 +13,9 @@ const MOST_PLACES: f64 = 60_000.0;
 const SINK: f64 = 1e-6;
 /// What may lie between the places (m), added to the bound that was found ...
 const BETWEEN: f64 = 5e-6;
-/// ... and in dents, as far as the tolerance leaves room for it.
-const BETWEEN_IN_DENTS: f64 = 4e-5;
+/// ... and in dents, as a part of the tolerance: there a ball rolls along where two facets hold it, and feels
+/// what no place on one of them tells.
+const BETWEEN_IN_DENTS: f64 = 0.2;
 /// Facets on which a gap or depth this near (m) to the largest was found are looked at more closely ...
 const CLOSE: f64 = 4e-5;
 /// ... at places so many times nearer to each other: in a dent the ball lies deepest just beside the edge.
@@ -53,8 +54,8 @@ impl Touch {
     pub fn bound(&self, twin: &Mesh, most: f64) -> Option<f64> {
         let (above, below) = self.range(twin, most)?;
         let found = above.max(below);
-        let between = if twin.is_locally_convex() { BETWEEN } else { BETWEEN_IN_DENTS };
-        (found + BETWEEN <= most).then_some((found + between).min(most))
+        let between = if twin.is_locally_convex() { BETWEEN } else { BETWEEN_IN_DENTS * most };
+        (found + between <= most).then_some(found + between)
     }
 
     /// How far (m) the ball is from the mesh at most, and how deep it enters it, over all places where it
@@ -64,11 +65,11 @@ impl Touch {
         let area: f64 = (0..twin.facets().len() as u32).map(|facet| twin.area(facet)).sum();
         let spacing = (SPACING * self.radius).max((area / MOST_PLACES).sqrt());
         let deepest = vec![0.0; twin.facets().len()];
-        let mut range = Range { touch: self, own, most, above: 0.0, below: 0.0, deepest };
+        let mut range = Range { touch: self, own, most, above: 0.0, below: 0.0, deepest, last: 0 };
         places(twin, self.radius, spacing, &mut |facet, p, n| range.visit(facet, p, n));
         for facet in range.close() {
             let n = twin.normal(facet);
-            on_facet(twin.corners(facet), spacing / CLOSER, |p| range.visit(facet, p, &n));
+            on_facet(twin.corners(facet), spacing / CLOSER, |p| range.visit_again(facet, p, &n));
         }
         range.is_within().then_some((range.above, range.below))
     }
@@ -85,6 +86,8 @@ struct Range<'t> {
     below: f64,
     /// The largest gap or depth on each facet (m), whether the ball can be there or not.
     deepest: Vec<f64>,
+    /// The facet of the mesh that was near last.
+    last: u32,
 }
 
 impl Range<'_> {
@@ -102,6 +105,23 @@ impl Range<'_> {
         if (gap > self.above || -gap > self.below) && self.is_free(p, n) {
             self.above = self.above.max(gap);
             self.below = self.below.max(-gap);
+        }
+    }
+
+    /// The same where the outcome is likely to be known: exact distances are asked for only where a ball comes
+    /// nearer than any before, or farther.
+    fn visit_again(&mut self, facet: u32, p: &Vec3, n: &Vec3) {
+        let center = p + n * self.touch.radius;
+        let solid = &self.touch.solid;
+        let far = self.touch.radius + self.above;
+        let is_known = solid.facet_within(&center, self.touch.radius - self.below).is_none()
+            && (solid.distance_from(self.last, &center) <= far
+                || solid.facet_within(&center, far).is_some_and(|near| {
+                    self.last = near;
+                    true
+                }));
+        if !is_known {
+            self.visit(facet, p, n);
         }
     }
 
