@@ -7,7 +7,7 @@ use regrasp_api::*;
 use regrasp_physics::*;
 use support::{G, hand, object, ring, shapes};
 
-const FRICTION: Friction = Friction { mu: 0.7, gamma: 0.004, grain: None };
+const FRICTION: Friction = Friction { mu: 0.7, gamma: 0.004, grain: None, drag: 0.0 };
 
 /// One state of a transfer and of a regrasp of finger 1, with the forces in each.
 fn held(object: &ObjectModel, friction: Friction) -> (Configuration, [Held; 2]) {

@@ -28,6 +28,11 @@ pub struct HoldingSettings {
     /// Largest disturbing torque, about any axis (N·m); 0 for none.
     #[schemars(range(min = 0.0, max = 1e3), extend("x-unit" = "N·m"))]
     pub disturbance_torque: f64,
+    /// The share of their torsional friction with which contacts drag while they spin, each one way or the
+    /// other, and which the others must balance; `[hold]` sets it for soft fingers. By default none.
+    #[serde(skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
+    pub drag: f64,
     /// Largest normal force of one contact (N); where absent the joints' efforts alone bound it.
     #[schemars(range(min = 1e-2, max = 1e4), extend("x-unit" = "N"))]
     #[schemars(example = 10.0)]
@@ -46,10 +51,15 @@ impl Default for HoldingSettings {
             friction_factor: 0.8,
             disturbance_force: 0.0,
             disturbance_torque: 0.0,
+            drag: 0.0,
             max_normal_force: None,
             reserve: 0.05,
         }
     }
+}
+
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
 }
 
 impl Settings for HoldingSettings {}
@@ -94,11 +104,17 @@ impl Holding {
         Ok(Self { settings, load })
     }
 
-    fn bearings(&self, grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Result<Bearings, CallError> {
+    /// The contacts, each dragging with this part of its drag.
+    fn bearings(
+        &self,
+        grasp: &Grasp<'_>,
+        lifted: Option<FingerIndex>,
+        drag: impl Fn(usize) -> f64,
+    ) -> Result<Bearings, CallError> {
         // The planner hands over less friction than there is, but all of the torsional friction.
         let part = 1.0 - self.settings.reserve;
         let torsion_part = part * self.settings.friction_factor;
-        let bearings = self.load.bearings(grasp, lifted, (part, torsion_part));
+        let bearings = self.load.bearings(grasp, lifted, (part, torsion_part), drag);
         bearings.ok_or_else(|| CallError::Unsupported {
             plugin: ID.into(),
             reason: "polyhedral cones; choose a contact model with elliptic ones, or `linearised`".into(),
@@ -111,14 +127,41 @@ impl Holding {
         lifted: Option<FingerIndex>,
         hint: &mut Hint,
     ) -> Result<(Stability, Balanced), CallError> {
-        let bearings = self.bearings(grasp, lifted)?;
-        let answer = self.load.held(&bearings, &grasp.g_O, 1.0, hint);
-        let stability = match answer.balanced {
-            Balanced::Yes(_) if answer.holds => Stability::Stable,
-            Balanced::Unknown if bearings.len() > 2 => Stability::Undecided,
-            _ => Stability::Unstable,
+        let (mut worst, mut balanced) = (Stability::Stable, Balanced::Unknown);
+        for drags in self.ways(grasp) {
+            let bearings = self.bearings(grasp, lifted, drags)?;
+            let answer = self.load.held(&bearings, &grasp.g_O, 1.0, hint);
+            worst = match answer.balanced {
+                Balanced::Yes(_) if answer.holds => Stability::Stable,
+                Balanced::Unknown if bearings.len() > 2 => Stability::Undecided,
+                _ => Stability::Unstable,
+            };
+            balanced = answer.balanced;
+            if !worst.is_stable() {
+                break;
+            }
+        }
+        Ok((worst, balanced))
+    }
+
+    /// The ways in which the contacts may drag that must all be held: the one way for contacts that do not;
+    /// else each contact with all of its drag one way or the other, and last none of it, for whose forces
+    /// nobody has to know the drag.
+    ///
+    /// What holds for both ways of one contact, the others the same, holds for every part of its drag between
+    /// them: a blend of the two forces presses there with a blend of both presses, whose drag runs from one
+    /// end to the other as the blend does, and keeps all bounds, which are convex. So the corners suffice.
+    fn ways(&self, grasp: &Grasp<'_>) -> impl Iterator<Item = impl Fn(usize) -> f64> {
+        let drag = self.settings.drag;
+        let count = grasp.contacts().len();
+        let corners = if grasp.has_drag() && drag > 0.0 { 1_u32 << count } else { 0 };
+        let way = move |k: u32| {
+            move |contact: usize| {
+                let sign = if k >> contact & 1 == 0 { drag } else { -drag };
+                if k == corners { 0.0 } else { sign }
+            }
         };
-        Ok((stability, answer.balanced))
+        (0..=corners).map(way)
     }
 
     fn certificate(&self, bearings: &Bearings, balanced: &Balanced, center_O: &Vec3) -> Certificate {
@@ -167,21 +210,30 @@ impl StabilityTest for Holding {
         _context: &mut Context<'_>,
     ) -> Result<Assessment, CallError> {
         let (stability, balanced) = self.judge(grasp, None, &mut Hint::default())?;
-        let bearings = self.bearings(grasp, None)?;
-        let share =
-            smallest_share(&bearings, &self.load.wanted(&grasp.g_O), 1.0).map(|smallest| smallest.share);
-        let lower = share.map_or(f64::NEG_INFINITY, |share| 1.0 - share);
+        let mut most = Some(0.0_f64);
+        for drags in self.ways(grasp) {
+            let bearings = self.bearings(grasp, None, drags)?;
+            let found = smallest_share(&bearings, &self.load.wanted(&grasp.g_O), 1.0);
+            most = most.zip(found).map(|(most, found)| most.max(found.share));
+        }
+        let lower = most.map_or(f64::NEG_INFINITY, |share| 1.0 - share);
         let (margin_lower, margin_upper) = if stability.is_stable() {
             (lower.max(0.0), 1.0)
         } else {
             (lower.clamp(-1e3, 0.0), lower.clamp(-1e3, 1.0))
         };
-        let certificate = self.certificate(&bearings, &balanced, &centroid(grasp));
+        // The last way is without drag: forces for it prove what they say. What cannot be held may be so
+        // with drag alone.
+        let bearings = self.bearings(grasp, None, |_| 0.0)?;
+        let certificate = match balanced {
+            Balanced::No(_) if grasp.has_drag() && self.settings.drag > 0.0 => Certificate::None,
+            _ => self.certificate(&bearings, &balanced, &centroid(grasp)),
+        };
         Ok(Assessment { stability, margin_lower, margin_upper, certificate })
     }
 
     fn criterion(&self) -> Criterion {
-        let HoldingSettings { weight, friction_factor, disturbance_force, disturbance_torque, .. } =
+        let HoldingSettings { weight, friction_factor, disturbance_force, disturbance_torque, drag, .. } =
             self.settings;
         let max_normal_force = self.settings.max_normal_force;
         Criterion::Holding(HoldLoad {
@@ -189,6 +241,7 @@ impl StabilityTest for Holding {
             friction_factor,
             disturbance_force,
             disturbance_torque,
+            drag,
             max_normal_force,
         })
     }
@@ -238,6 +291,7 @@ mod tests {
             (r#"{"friction_factor": 0.01}"#, "friction_factor"),
             (r#"{"disturbance_force": -1}"#, "disturbance_force"),
             (r#"{"disturbance_torque": -1}"#, "disturbance_torque"),
+            (r#"{"drag": 1.5}"#, "drag"),
             (r#"{"max_normal_force": 0}"#, "max_normal_force"),
             (r#"{"reserve": 0.9}"#, "reserve"),
         ] {
