@@ -111,7 +111,8 @@ impl<'a> Task<'a> {
     /// A transfer, and a path in GS_n that transfers are to follow, is stable where this grasp is.
     pub fn transfer_grasp(&self, q: &Configuration, holding: FingerSet) -> Grasp<'a> {
         let mu = self.planning_friction();
-        let cone = |finger: FingerIndex, contact: &Contact| self.contact_model.spinning_cone(finger, contact, mu);
+        let cone =
+            |finger: FingerIndex, contact: &Contact| self.contact_model.spinning_cone(finger, contact, mu);
         let mut grasp = Grasp::new(q.X_HO.rotation.inverse() * self.g_H);
         let drags = self.stability.uses_efforts();
         self.fill(&mut grasp, q, holding, cone, |grasp, finger, contact| {

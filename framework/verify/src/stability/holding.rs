@@ -65,8 +65,9 @@ impl HoldingCheck {
     /// `None` where the claim has no meaning.
     pub(crate) fn new(claims: &Claims, load: &HoldLoad, weight_H: Vec3) -> Option<Self> {
         let cone = claims.contact.cone?;
-        let HoldLoad { friction_factor, disturbance_force, disturbance_torque, max_normal_force, drag, .. } =
-            *load;
+        let HoldLoad {
+            friction_factor, disturbance_force, disturbance_torque, max_normal_force, drag, ..
+        } = *load;
         let sizes = [disturbance_force, disturbance_torque, drag, max_normal_force.unwrap_or(1.0)];
         let sound = sizes.iter().all(|x| *x >= 0.0 && x.is_finite())
             && cone.is_sound()
