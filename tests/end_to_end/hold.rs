@@ -29,6 +29,7 @@ fn what_contradicts_itself_is_refused() {
         "[hold]\ndisturbance = [0.1, 0.0]\n\n[plugins.stability-test]\nuse = \"force-closure\"",
         &["`hold.disturbance`", "cannot do what it asks for", "holding"],
     );
+    refused("[hold]\ndrag = 1.5", &["drag", "1.5", "0..=1"]);
     refused("[hold]\nfriction_factr = 0.6", &["did you mean `friction_factor`?"]);
     refused(
         "[hold]\n\n[plugins.stability-test]\nuse = \"holding\"\ndisturbance_force = 0.2",
@@ -156,4 +157,33 @@ fn as_little_friction_as_can_be_is_less_than_what_a_number_asks_for() {
         .expect("the one that was planned with");
     assert!((0.5..0.8).contains(&factor), "{factor}");
     assert_eq!(plan["claims"]["criterion"]["holding"]["friction_factor"].as_f64(), Some(factor));
+}
+
+/// Soft fingers drag while they spin, and plans of them must hold that; the verifier holds them to it.
+#[test]
+fn what_spinning_soft_fingers_drag_is_held() {
+    let desk = Desk::new();
+    let said = desk.run("plan three-finger-soft --seed 1 -o soft.json");
+    assert_eq!(said.code, 0, "{}", said.err);
+    let plan: Value = serde_json::from_str(&desk.read("soft.json")).expect("it is JSON");
+    assert_eq!(plan["claims"]["criterion"]["holding"]["drag"].as_f64(), Some(1.0));
+    let mut free = plan.clone();
+    free["claims"]["criterion"]["holding"]["drag"] = 0.0.into();
+    desk.write("free.json", free.to_string());
+    desk.run("verify free.json").assert_fails(4, &["less is claimed to be held"]);
+    // More drag than three contacts can balance at their lever: 0.2 m of torsional radius on a ball of 33 mm.
+    let mut rough = plan;
+    rough["claims"]["contact"]["cone"]["gamma"] = 0.2.into();
+    rough["scenario"]["plugins"]["contact-model"]["settings"]["gamma"] = 0.2.into();
+    desk.write("rough.json", rough.to_string());
+    desk.run("verify rough.json").assert_fails(4, &["stability"]);
+}
+
+#[test]
+fn points_do_not_drag() {
+    let desk = Desk::new();
+    desk.write("mine.toml", sphere("[hold]\nfriction_factor = 0.6"));
+    let said = desk.run("plan mine.toml --seed 1 -o plan.json");
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(!desk.read("plan.json").contains("drag"), "nothing in the file says so");
 }

@@ -24,14 +24,17 @@ def columns(points, normals, gamma):
     return np.hstack(blocks)
 
 
-def slack(points, normals, mu, gamma=0.0, load=None, most=None):
+def slack(points, normals, mu, gamma=0.0, load=None, most=None, drags=None):
     """The largest t for which balanced forces exist with f_n - t ≥ |(f_t/μ, m/γ)| at every contact.
 
     Without a load the normal forces sum to 1; with one they are at most `most - t` each. Points are
-    taken from the centre, in units of length.
+    taken from the centre, in units of length. `drags` are the torques about the normals, per unit of
+    normal force, with which contacts drag while they spin.
     """
     G = columns(points, normals, gamma)
     width, n = G.shape[1] // max(len(points), 1), len(points)
+    for i, drag in enumerate(drags or []):
+        G[3:, width * i] += drag * np.asarray(normals[i])
     scale = np.tile([1.0, mu, mu, gamma][:width], n)
     if n < 2 or mu <= 0:
         return -np.inf

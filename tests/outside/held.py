@@ -1,5 +1,7 @@
 """Whether the fingers hold the object, by Clarabel, and whether the plan's own figures are true."""
 
+import itertools
+
 import numpy as np
 
 import grasps
@@ -75,7 +77,16 @@ class Held:
         for axis in np.vstack([np.eye(3), -np.eye(3)]):
             pushes.append(np.concatenate([axis * load["disturbance_force"], np.zeros(3)]))
             pushes.append(np.concatenate([np.zeros(3), axis * load["disturbance_torque"] / self.length]))
-        slacks = [grasps.slack(points, normals, share * mu, gamma, w + push, most) for push in pushes]
+        # Contacts may spin in a transfer; each then drags, one way or the other.
+        drag = 0.0
+        if self.segments[s].get("finger") is None:
+            drag = load.get("drag", 0.0) * self.plan["claims"]["contact"]["cone"]["gamma"] / self.length
+        ways = itertools.product([drag, -drag], repeat=len(points)) if drag else [None]
+        slacks = [
+            grasps.slack(points, normals, share * mu, gamma, w + push, most, way)
+            for way in ways
+            for push in pushes
+        ]
         return min(slacks) / most
 
     def forces(self, s, k, q, mu):

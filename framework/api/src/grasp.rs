@@ -64,6 +64,15 @@ impl Cone<'_> {
         }
     }
 
+    /// The largest torque about the normal per newton of normal force (m); 0 where there is none.
+    pub fn torsion(&self) -> f64 {
+        match self {
+            Self::Elliptic { gamma, .. } => *gamma,
+            Self::Grained(grain) => grain.gamma,
+            Self::Polyhedral(edges) => edges.iter().map(|edge| edge.torsion.abs()).fold(0.0, f64::max),
+        }
+    }
+
     /// Whether the contact can transmit a torque about its normal.
     pub fn carries_torsion(&self) -> bool {
         match self {
@@ -162,6 +171,8 @@ pub struct Grasp<'a> {
     count: u8,
     /// One for each contact, or none at all: most tests ask for none, and pay nothing.
     efforts: Vec<EffortBounds>,
+    /// See [`Grasp::drag`].
+    drags: [f64; MAX_FINGERS],
     /// Acceleration of gravity in the object's frame (m/s²); zero where gravity is not modelled.
     pub g_O: Vec3,
 }
@@ -175,7 +186,8 @@ impl<'a> Grasp<'a> {
             n_O: Vec3::new(0.0, 0.0, 1.0),
             cone: Cone::FRICTIONLESS,
         };
-        Self { contacts: [const { NOTHING }; MAX_FINGERS], count: 0, efforts: Vec::new(), g_O }
+        let (contacts, drags) = ([const { NOTHING }; MAX_FINGERS], [0.0; MAX_FINGERS]);
+        Self { contacts, count: 0, efforts: Vec::new(), drags, g_O }
     }
 
     /// Adds a contact; at most [`MAX_FINGERS`].
@@ -197,6 +209,27 @@ impl<'a> Grasp<'a> {
         self.efforts.get(contact)
     }
 
+    /// The largest torque about the normal, per newton of normal force (m), with which the contact with this
+    /// number drags while it spins, one way or the other; 0 where it does not spin, or spins freely.
+    ///
+    /// A spinning contact transmits no torque that a grasp could rely on, but the friction that opposes its
+    /// spin is there all the same, and the other contacts must balance it.
+    pub fn drag(&self, contact: usize) -> f64 {
+        self.drags[contact]
+    }
+
+    /// Whether any contact drags.
+    pub fn has_drag(&self) -> bool {
+        self.drags.iter().any(|drag| *drag > 0.0)
+    }
+
+    /// Says that the contact that was added last drags: see [`Grasp::drag`].
+    pub fn drags(&mut self, drag: f64) {
+        if let Some(last) = usize::from(self.count).checked_sub(1) {
+            self.drags[last] = drag;
+        }
+    }
+
     /// The contacts, in the order in which they were added.
     pub fn contacts(&self) -> &[GraspContact<'a>] {
         &self.contacts[..usize::from(self.count)]
@@ -211,6 +244,7 @@ impl<'a> Grasp<'a> {
                 Some(efforts) => rest.push_bounded(contact.clone(), *efforts),
                 None => rest.push(contact.clone()),
             }
+            rest.drags(self.drags[i]);
         }
         rest
     }

@@ -105,12 +105,22 @@ impl<'a> Task<'a> {
         self.grasp_with(q, holding, |finger, contact| self.contact_model.cone(finger, contact, mu))
     }
 
-    /// The same while the object moves: contacts may spin about their normals, and then transmit no torsion.
+    /// The same while the object moves: contacts may spin about their normals, and then transmit no torsion,
+    /// but drag with as much.
     ///
     /// A transfer, and a path in GS_n that transfers are to follow, is stable where this grasp is.
     pub fn transfer_grasp(&self, q: &Configuration, holding: FingerSet) -> Grasp<'a> {
         let mu = self.planning_friction();
-        self.grasp_with(q, holding, |finger, contact| self.contact_model.spinning_cone(finger, contact, mu))
+        let cone =
+            |finger: FingerIndex, contact: &Contact| self.contact_model.spinning_cone(finger, contact, mu);
+        let mut grasp = Grasp::new(q.X_HO.rotation.inverse() * self.g_H);
+        let drags = self.stability.uses_efforts();
+        self.fill(&mut grasp, q, holding, cone, |grasp, finger, contact| {
+            if drags {
+                grasp.drags(self.contact_model.cone(finger, contact, mu).torsion());
+            }
+        });
+        grasp
     }
 
     fn grasp_with(
@@ -120,6 +130,19 @@ impl<'a> Task<'a> {
         cone: impl Fn(FingerIndex, &Contact) -> Cone<'a>,
     ) -> Grasp<'a> {
         let mut grasp = Grasp::new(q.X_HO.rotation.inverse() * self.g_H);
+        self.fill(&mut grasp, q, holding, cone, |_, _, _| {});
+        grasp
+    }
+
+    /// Adds the contacts with their cones, and says of each what else there is to say.
+    fn fill(
+        &self,
+        grasp: &mut Grasp<'a>,
+        q: &Configuration,
+        holding: FingerSet,
+        cone: impl Fn(FingerIndex, &Contact) -> Cone<'a>,
+        more: impl Fn(&mut Grasp<'a>, FingerIndex, &Contact),
+    ) {
         let bounded = self.stability.uses_efforts();
         for (finger, contact) in q.contacts.iter() {
             if let (Some(contact), true) = (contact, holding.contains(finger)) {
@@ -132,8 +155,8 @@ impl<'a> Task<'a> {
                 } else {
                     grasp.push(touch);
                 }
+                more(grasp, finger, contact);
             }
         }
-        grasp
     }
 }

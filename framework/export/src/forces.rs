@@ -4,13 +4,18 @@
 //! chooses them.
 
 use crate::ExportError;
-use regrasp_api::{Configuration, FingerIndex, Hand, ObjectModel, Vec3};
-use regrasp_physics::{ContactForce, Friction, Held, SimulationSettings, Stage, grasp_forces};
+use regrasp_api::{Configuration, FingerIndex, FingerJoints, Hand, ObjectModel, PerFinger, Vec3};
+use regrasp_physics::{
+    ContactForce, Friction, Held, SimulationSettings, Stage, creep, dragged_forces, grasp_forces,
+};
 use regrasp_plan::{Criterion, Motion, Plan, Segment, SegmentKind};
 
 /// The forces of a whole motion, state by state in the order of [`Scene::states`].
 pub(crate) struct Forces {
     held: Vec<Option<Held>>,
+    /// What motors must exert where contacts drag while they spin, and how far ahead of the plan their joints
+    /// must be so that the object is on its way while they creep; empty where contacts carry no torsion.
+    driven: Vec<(Option<Held>, PerFinger<FingerJoints>)>,
     /// Why there are none at all.
     missing: Option<String>,
     settings: SimulationSettings,
@@ -32,7 +37,8 @@ impl Forces {
             let missing =
                 format!("`{model}` claims no elliptic friction cone, so no grasp forces are exported");
             let count = motion.segments.iter().map(|segment| segment.states.len()).sum();
-            return Ok(Self { held: vec![None; count], missing: Some(missing), settings });
+            let held = vec![None; count];
+            return Ok(Self { held, driven: Vec::new(), missing: Some(missing), settings });
         };
         // Another grip than the plan's asks for other forces.
         let stage = |segment| stage(segment, grip.is_none());
@@ -40,7 +46,13 @@ impl Forces {
         let g_H = Vec3::from(plan.scenario.problem.gravity);
         let friction = Friction::of(&cone.cone()).unwrap_or(Friction::point(cone.mu));
         let held = grasp_forces((hand, object, g_H), friction, &stages, &settings)?;
-        Ok(Self { held: held.into_iter().flatten().collect(), missing: None, settings })
+        let mut driven = Vec::new();
+        if friction.gamma > 0.0 {
+            let dragged = dragged_forces((hand, object, g_H), friction, &stages, &settings)?;
+            let ahead = creep(hand, friction, &stages, &dragged);
+            driven = dragged.into_iter().flatten().zip(ahead.into_iter().flatten()).collect();
+        }
+        Ok(Self { held: held.into_iter().flatten().collect(), driven, missing: None, settings })
     }
 
     /// What a finger exerts on the object in a state (in H); `None` where it does not hold it.
@@ -51,10 +63,16 @@ impl Forces {
     /// The least distance of a force from its cone (N); not positive where no forces within cones and efforts
     /// hold the object.
     pub fn margin(&self, state: usize) -> Option<f64> {
-        self.held[state].as_ref().map(|held| held.margin)
+        self.exerted(state).map(|held| held.margin)
     }
 
-    /// Where a joint's motor must aim so that its spring exerts the joint's part of the forces: q + τ/k.
+    /// What the motors exert in a state.
+    fn exerted(&self, state: usize) -> Option<&Held> {
+        self.driven.get(state).map_or(self.held[state].as_ref(), |(held, _)| held.as_ref())
+    }
+
+    /// Where a joint's motor must aim so that its spring exerts the joint's part of the forces: q + τ/k, and
+    /// where contacts creep as far ahead.
     pub fn target(
         &self,
         state: usize,
@@ -63,8 +81,9 @@ impl Forces {
         joint: usize,
         prismatic: bool,
     ) -> f64 {
-        let effort = self.held[state].as_ref().map_or(0.0, |held| held.efforts[finger][joint]);
-        q.joints[finger][joint] + effort / self.stiffness(prismatic)
+        let effort = self.exerted(state).map_or(0.0, |held| held.efforts[finger][joint]);
+        let ahead = self.driven.get(state).map_or(0.0, |(_, ahead)| ahead[finger][joint]);
+        q.joints[finger][joint] + effort / self.stiffness(prismatic) + ahead
     }
 
     /// Stiffness of the motors (N·m/rad; N/m where prismatic).

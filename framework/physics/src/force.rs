@@ -15,6 +15,9 @@ pub struct Friction {
     /// A grain: along it μ counts, across it the coefficient that it names; `None` where friction is the same
     /// all round.
     pub grain: Option<Across>,
+    /// The torque about the outward normal, per newton of normal force (m), with which a contact that spins
+    /// drags the object along, of either sign; 0 where it does not. It is on top of what the cone allows.
+    pub drag: f64,
 }
 
 /// Friction across a grain.
@@ -34,7 +37,7 @@ impl Friction {
 
     /// The same all round.
     pub fn round(mu: f64, gamma: f64) -> Self {
-        Self { mu, gamma, grain: None }
+        Self { mu, gamma, grain: None, drag: 0.0 }
     }
 
     /// Of contacts with this cone; `None` where it is a polyhedron.
@@ -43,7 +46,8 @@ impl Friction {
             Cone::Elliptic { mu, gamma } => Some(Self::round(*mu, *gamma)),
             Cone::Grained(grain) => {
                 let ([mu, across], axis_O) = (grain.mu, grain.axis_O);
-                Some(Self { mu, gamma: grain.gamma, grain: Some(Across { mu: across, axis_O }) })
+                let round = Self::round(mu, grain.gamma);
+                Some(Self { grain: Some(Across { mu: across, axis_O }), ..round })
             }
             Cone::Polyhedral(_) => None,
         }
@@ -52,12 +56,17 @@ impl Friction {
     /// A part of the friction, and one of the torsional friction.
     pub(crate) fn scaled(self, part: f64, torsion_part: f64) -> Self {
         let grain = self.grain.map(|grain| Across { mu: grain.mu * part, ..grain });
-        Self { mu: self.mu * part, gamma: self.gamma * torsion_part, grain }
+        Self { mu: self.mu * part, gamma: self.gamma * torsion_part, grain, ..self }
     }
 
     /// Without torques about the normal.
     pub(crate) fn without_torsion(self) -> Self {
         Self { gamma: 0.0, ..self }
+    }
+
+    /// The same of a contact that drags.
+    pub(crate) fn dragging(self, drag: f64) -> Self {
+        Self { drag, ..self }
     }
 
     /// The tangential directions at the outward normal `n_O`, unit vectors in O, with their coefficients.
@@ -78,7 +87,8 @@ impl Friction {
         if let Some(grain) = self.grain {
             check("friction", grain.mu, 0.0, 10.0)?;
         }
-        check("gamma", self.gamma, 0.0, 1.0)
+        check("gamma", self.gamma, 0.0, 1.0)?;
+        check("drag", self.drag, -1.0, 1.0)
     }
 
     /// How long (m) the lever is with which a tangential force compares with a torque about the normal: γ/μ.

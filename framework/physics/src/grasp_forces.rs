@@ -1,10 +1,11 @@
 //! The forces of a whole motion.
 
+use crate::drag::spins;
 use crate::force::Friction;
 use crate::hold::{Held, Holder};
 use crate::settings::check;
 use crate::{PhysicsError, SimulationSettings, Stage};
-use regrasp_api::{Configuration, Hand, ObjectModel, Vec3};
+use regrasp_api::{Configuration, Hand, ObjectModel, PerFinger, Vec3};
 
 /// The forces that hold the object in every state of a motion, stage by stage: those that a state brings, or
 /// else those that need least of the friction within the joints' efforts.
@@ -25,6 +26,32 @@ pub fn grasp_forces(
     let one = |stage: &Stage<'_>| {
         let holder = Holder::new((hand, object, g_H), stage.friction(friction), settings);
         holder.stage(stage)
+    };
+    Ok(stages.iter().map(one).collect())
+}
+
+/// The same where contacts with torsional friction drag while they spin, as they do in every transfer: there
+/// forces are chosen that balance the drag too, and none that a state brings is taken.
+///
+/// A spinning contact's torque ([`crate::ContactForce::spin`]) is its normal force times the torsional radius,
+/// in the direction of its spin, built up over the first 0.02 rad of it.
+pub fn dragged_forces(
+    (hand, object, g_H): (&dyn Hand, &ObjectModel, Vec3),
+    friction: Friction,
+    stages: &[Stage<'_>],
+    settings: &SimulationSettings,
+) -> Result<Vec<Vec<Option<Held>>>, PhysicsError> {
+    settings.validate()?;
+    friction.validate()?;
+    let one = |stage: &Stage<'_>| {
+        let holder = Holder::new((hand, object, g_H), stage.friction(friction), settings);
+        if stage.moving.is_some() || !friction.has_torsion() {
+            return holder.stage(stage);
+        }
+        let part = |spins: &PerFinger<(f64, f64)>| {
+            PerFinger::from_fn(spins.len(), |finger| spins[finger].0 * friction.gamma)
+        };
+        holder.choose(stage, &spins(hand, stage).iter().map(part).collect::<Vec<_>>())
     };
     Ok(stages.iter().map(one).collect())
 }

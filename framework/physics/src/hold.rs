@@ -81,16 +81,19 @@ impl<'a> Holder<'a> {
             *held = brought(k).map(|forces| self.brought(q, stage.holding(q), forces));
         }
         if all.iter().any(Option::is_none) {
-            let chosen = self.choose(stage);
+            let chosen = self.choose(stage, &[]);
             all.iter_mut().zip(chosen).for_each(|(held, chosen)| *held = held.take().or(chosen));
         }
         all
     }
 
-    fn choose(&self, stage: &Stage<'_>) -> Vec<Option<Held>> {
+    /// Forces for all states of a stage; `drags` are the contacts' [`Friction::drag`] in each, none where
+    /// there are none.
+    pub fn choose(&self, stage: &Stage<'_>, drags: &[PerFinger<f64>]) -> Vec<Option<Held>> {
         let states = stage.states;
         let grips = |press: &Press| -> Vec<Grip> {
-            states.iter().map(|q| self.grip(q, stage.holding(q), press)).collect()
+            let each = states.iter().enumerate();
+            each.map(|(k, q)| self.grip(q, stage.holding(q), press, drags.get(k))).collect()
         };
         let mut made = grips(&self.press);
         let mut needed = needs(&made);
@@ -117,7 +120,7 @@ impl<'a> Holder<'a> {
     /// How all fingers that touch hold the object at rest: by the analytic centre of the forces that need at
     /// most `share` of the friction, and where there are none, by those that need least.
     pub fn one(&self, q: &Configuration, share: f64) -> Option<Held> {
-        let grip = self.grip(q, q.holding(), &self.press);
+        let grip = self.grip(q, q.holding(), &self.press, None);
         match centre(&grip, share, None) {
             Some(forces) => Some(self.found(q, &grip, &forces)),
             None => {
@@ -128,7 +131,13 @@ impl<'a> Holder<'a> {
         }
     }
 
-    fn grip(&self, q: &Configuration, holding: FingerSet, press: &Press) -> Grip {
+    fn grip(
+        &self,
+        q: &Configuration,
+        holding: FingerSet,
+        press: &Press,
+        drags: Option<&PerFinger<f64>>,
+    ) -> Grip {
         let to_O = q.X_HO.rotation.inverse();
         let weight = to_O * self.g_H * self.object.mass;
         let wanted = stacked(&-weight, &Vec3::zeros());
@@ -138,7 +147,8 @@ impl<'a> Holder<'a> {
             let bounds = EffortBounds::at(self.hand, finger, &q.joints[finger], &q.X_HO, &contact.n_O);
             let r_O = contact.p_OC - self.object.p_OCm;
             let place = (&r_O, &contact.n_O);
-            grip.bearings.push(Bearing::new(place, &self.friction, &bounds, press, self.length));
+            let friction = drags.map_or(self.friction, |drags| self.friction.dragging(drags[finger]));
+            grip.bearings.push(Bearing::new(place, &friction, &bounds, press, self.length));
             grip.fingers.push(finger);
             grip.bounds.push(bounds);
         }
@@ -152,7 +162,7 @@ impl<'a> Holder<'a> {
 
     /// What forces (N, in O) that were chosen before ask for.
     fn brought(&self, q: &Configuration, holding: FingerSet, forces: &PerFinger<Option<Vec3>>) -> Held {
-        let grip = self.grip(q, holding, &self.press);
+        let grip = self.grip(q, holding, &self.press, None);
         let of_finger = |&finger: &FingerIndex| ContactForce::pure(forces[finger].unwrap_or_default());
         let in_O: Vec<_> = grip.fingers.iter().map(of_finger).collect();
         let share = |(&finger, exerted): (&FingerIndex, &ContactForce)| {

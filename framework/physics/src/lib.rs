@@ -1,7 +1,7 @@
 //! Chooses grasp forces within friction cones and the joints' efforts, and simulates transfers and whole
 //! motions in rapier3d: the hand as jointed bodies driven by motors, the object free under gravity.
 //!
-//! [`grasp_forces`] needs no simulator; everything else is behind the feature `rapier`.
+//! [`grasp_forces`], [`dragged_forces`] and [`creep`] need no simulator; everything else is behind the feature `rapier`.
 //!
 //! What is simulated:
 //! - each finger as a chain of bodies with the hand's joint axes, in reduced coordinates (no joint can come
@@ -21,6 +21,7 @@
 
 #[cfg(feature = "rapier")]
 mod border;
+mod drag;
 mod error;
 #[cfg(feature = "rapier")]
 mod finger;
@@ -45,9 +46,10 @@ mod surface;
 #[cfg(feature = "rapier")]
 mod transfer;
 
+pub use drag::creep;
 pub use error::PhysicsError;
 pub use force::{Across, ContactForce, Friction};
-pub use grasp_forces::{grasp_forces, grasp_forces_at};
+pub use grasp_forces::{dragged_forces, grasp_forces, grasp_forces_at};
 pub use hold::Held;
 pub use holding::{
     Answer, Balanced, Bearing, Bearings, Edged, EdgesAnswer, EdgesBalanced, Exerted, Forces, HeldLoad, Press,

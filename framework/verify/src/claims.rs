@@ -157,6 +157,7 @@ fn wrong_holding(plan: &Plan, id: &str, load: &HoldLoad) -> Option<String> {
         friction_factor: number("friction_factor").unwrap_or(1.0),
         disturbance_force: number("disturbance_force").unwrap_or(0.0),
         disturbance_torque: number("disturbance_torque").unwrap_or(0.0),
+        drag: number("drag").unwrap_or(0.0),
         max_normal_force: number("max_normal_force"),
     };
     if let Some(hold) = &plan.scenario.problem.hold {
@@ -166,12 +167,14 @@ fn wrong_holding(plan: &Plan, id: &str, load: &HoldLoad) -> Option<String> {
         asked.weight |= hold.weight;
         asked.disturbance_force = asked.disturbance_force.max(hold.disturbance[0]);
         asked.disturbance_torque = asked.disturbance_torque.max(hold.disturbance[1]);
+        asked.drag = asked.drag.max(hold.drag.unwrap_or(0.0));
     }
     let most = |load: &HoldLoad| load.max_normal_force.unwrap_or(f64::INFINITY);
     let agrees = (load.weight || !asked.weight)
         && load.friction_factor <= asked.friction_factor
         && load.disturbance_force >= asked.disturbance_force
         && load.disturbance_torque >= asked.disturbance_torque
+        && load.drag >= asked.drag
         && most(load) <= most(&asked);
     (!agrees).then(|| "less is claimed to be held than the scenario asks for".into())
 }

@@ -31,6 +31,11 @@ pub struct HoldingSettings {
     /// Largest disturbing torque, about any axis (N·m); 0 for none.
     #[schemars(range(min = 0.0, max = 1e3), extend("x-unit" = "N·m"))]
     pub disturbance_torque: f64,
+    /// The share of their torsional friction with which contacts drag while they spin, each one way or the
+    /// other, and which the others must balance; `[hold]` sets it for soft fingers. By default none.
+    #[serde(skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
+    pub drag: f64,
     /// Largest normal force of one contact (N); where absent the joints' efforts alone bound it.
     #[schemars(range(min = 1e-2, max = 1e4), extend("x-unit" = "N"))]
     #[schemars(example = 10.0)]
@@ -49,10 +54,15 @@ impl Default for HoldingSettings {
             friction_factor: 0.8,
             disturbance_force: 0.0,
             disturbance_torque: 0.0,
+            drag: 0.0,
             max_normal_force: None,
             reserve: 0.05,
         }
     }
+}
+
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
 }
 
 impl Settings for HoldingSettings {}
@@ -105,18 +115,60 @@ impl Holding {
         (part, part * self.settings.friction_factor)
     }
 
-    /// The contacts, as they are looked at.
-    fn held(&self, grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Held {
-        let round =
-            is_round(grasp, lifted).then(|| self.load.bearings(grasp, lifted, self.parts())).flatten();
-        match round {
-            Some(bearings) => Held::Round(bearings),
-            None => Held::Edged(self.load.edged(grasp, lifted, self.parts())),
+    /// Whether any contact drags.
+    fn drags(&self, grasp: &Grasp<'_>) -> bool {
+        self.settings.drag > 0.0 && grasp.has_drag()
+    }
+
+    /// The contacts as they are looked at, each dragging with this part of its drag.
+    fn held(
+        &self,
+        grasp: &Grasp<'_>,
+        lifted: Option<FingerIndex>,
+        drag: impl Fn(usize) -> f64,
+    ) -> Result<Held, CallError> {
+        let round = is_round(grasp, lifted);
+        match round.then(|| self.load.bearings(grasp, lifted, self.parts(), drag)).flatten() {
+            Some(bearings) => Ok(Held::Round(bearings)),
+            None if self.drags(grasp) => Err(CallError::Unsupported {
+                plugin: ID.into(),
+                reason: "polyhedral cones of contacts that drag while they spin; set `hold.drag` = 0, or choose \
+                         a contact model with elliptic cones"
+                    .into(),
+            }),
+            None => Ok(Held::Edged(self.load.edged(grasp, lifted, self.parts()))),
         }
     }
 
-    fn judge(&self, grasp: &Grasp<'_>, lifted: Option<FingerIndex>, hint: &mut Hint) -> Judged {
-        let held = self.held(grasp, lifted);
+    /// The verdict whichever way the contacts drag: each with all of its drag one way or the other, and last
+    /// none of it, for whose forces nobody has to know the drag.
+    ///
+    /// What holds for both ways of one contact, the others the same, holds for every part of its drag between
+    /// them: a blend of the two forces presses there with a blend of both presses, whose drag runs from one
+    /// end to the other as the blend does, and keeps all bounds, which are convex. So the corners suffice.
+    fn judge(
+        &self,
+        grasp: &Grasp<'_>,
+        lifted: Option<FingerIndex>,
+        hint: &mut Hint,
+    ) -> Result<Judged, CallError> {
+        for drag in self.corners(grasp) {
+            let judged = self.judge_one(self.held(grasp, lifted, drag)?, grasp, hint);
+            if !judged.stability.is_stable() {
+                return Ok(judged);
+            }
+        }
+        Ok(self.judge_one(self.held(grasp, lifted, |_| 0.0)?, grasp, hint))
+    }
+
+    /// All ways in which each contact drags with all of its drag; none where no contact drags.
+    fn corners(&self, grasp: &Grasp<'_>) -> impl Iterator<Item = impl Fn(usize) -> f64> {
+        let drag = self.settings.drag;
+        let corners = if self.drags(grasp) { 1_u32 << grasp.contacts().len() } else { 0 };
+        (0..corners).map(move |k| move |contact: usize| if k >> contact & 1 == 0 { drag } else { -drag })
+    }
+
+    fn judge_one(&self, held: Held, grasp: &Grasp<'_>, hint: &mut Hint) -> Judged {
         let (found, holds) = match &held {
             Held::Round(bearings) => {
                 let answer = self.load.held(bearings, &grasp.g_O, 1.0, hint);
@@ -239,7 +291,7 @@ impl StabilityTest for Holding {
         context: &mut Context<'_>,
     ) -> Result<Stability, CallError> {
         context.count_call(Slot::StabilityTest);
-        Ok(self.judge(grasp, None, hint).stability)
+        Ok(self.judge(grasp, None, hint)?.stability)
     }
 
     fn assess(
@@ -249,20 +301,29 @@ impl StabilityTest for Holding {
         _center_O: Option<Vec3>,
         _context: &mut Context<'_>,
     ) -> Result<Assessment, CallError> {
-        let judged = self.judge(grasp, None, &mut Hint::default());
+        let judged = self.judge(grasp, None, &mut Hint::default())?;
         let stability = judged.stability;
-        let lower = self.smallest(&judged.held, grasp).map_or(f64::NEG_INFINITY, |share| 1.0 - share);
+        let mut most = self.smallest(&self.held(grasp, None, |_| 0.0)?, grasp);
+        for drag in self.corners(grasp) {
+            let found = self.smallest(&self.held(grasp, None, drag)?, grasp);
+            most = most.zip(found).map(|(most, found)| most.max(found));
+        }
+        let lower = most.map_or(f64::NEG_INFINITY, |share| 1.0 - share);
         let (margin_lower, margin_upper) = if stability.is_stable() {
             (lower.max(0.0), 1.0)
         } else {
             (lower.clamp(-1e3, 0.0), lower.clamp(-1e3, 1.0))
         };
-        let certificate = self.certificate(&judged, &centroid(grasp));
+        let certificate = match judged.found {
+            // What cannot be held may be so with drag alone, of which a certificate knows nothing.
+            Found::Round(Balanced::No(_)) if self.drags(grasp) => Certificate::None,
+            _ => self.certificate(&judged, &centroid(grasp)),
+        };
         Ok(Assessment { stability, margin_lower, margin_upper, certificate })
     }
 
     fn criterion(&self) -> Criterion {
-        let HoldingSettings { weight, friction_factor, disturbance_force, disturbance_torque, .. } =
+        let HoldingSettings { weight, friction_factor, disturbance_force, disturbance_torque, drag, .. } =
             self.settings;
         let max_normal_force = self.settings.max_normal_force;
         Criterion::Holding(HoldLoad {
@@ -270,6 +331,7 @@ impl StabilityTest for Holding {
             friction_factor,
             disturbance_force,
             disturbance_torque,
+            drag,
             max_normal_force,
         })
     }
@@ -285,7 +347,7 @@ impl StabilityTest for Holding {
         context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
         context.count_call(Slot::StabilityTest);
-        Ok(self.judge(grasp, Some(finger), &mut Hint::default()).stability.is_stable())
+        Ok(self.judge(grasp, Some(finger), &mut Hint::default())?.stability.is_stable())
     }
 }
 
@@ -319,6 +381,7 @@ mod tests {
             (r#"{"friction_factor": 0.01}"#, "friction_factor"),
             (r#"{"disturbance_force": -1}"#, "disturbance_force"),
             (r#"{"disturbance_torque": -1}"#, "disturbance_torque"),
+            (r#"{"drag": 1.5}"#, "drag"),
             (r#"{"max_normal_force": 0}"#, "max_normal_force"),
             (r#"{"reserve": 0.9}"#, "reserve"),
         ] {

@@ -283,4 +283,55 @@ fn most_power_of_edges((n_O, mu, bounds): &(Vec3, f64, EffortBounds), velocity: 
         force.dot(velocity) / shares.fold(1e-12, f64::max)
     };
     (0..8).map(of_edge).fold(0.0, f64::max)
+/// Three contacts on the equator of the ball that drag with up to `drag` (m).
+fn dragging(mu: f64, drag: f64) -> Grasp<'static> {
+    let mut grasp = Grasp::new(Vec3::z() * -9.81);
+    for i in 0..3_u8 {
+        let (y, x) = (f64::from(i) * std::f64::consts::TAU / 3.0).sin_cos();
+        let (n_O, cone) = (Vec3::new(x, y, 0.0), Cone::Elliptic { mu, gamma: 0.0 });
+        grasp.push(GraspContact { finger: FingerIndex(i), p_OC: n_O * 0.03, n_O, cone });
+        grasp.drags(drag);
+    }
+    grasp
+}
+
+/// The torque that drag gives about a horizontal axis is borne by friction along the other one: a radius of
+/// torsion that is small against μ r is held, one that is larger than 2 μ r is not.
+#[test]
+fn drag_must_be_balanced_whichever_way() {
+    let settings = |drag| HoldingSettings { drag, max_normal_force: Some(10.0), ..Default::default() };
+    let (all, none, half) = (test_with(settings(1.0)), test_with(settings(0.0)), test_with(settings(0.5)));
+    let mut last = true;
+    for drag in [0.0, 0.004, 0.01, 0.02, 0.03, 0.06, 0.1] {
+        let grasp = dragging(0.8, drag);
+        assert!(verdict(&none, &grasp).is_stable(), "who counts no drag holds it at {drag}");
+        let stable = verdict(&all, &grasp).is_stable();
+        assert!(last || !stable, "more drag is no easier: {drag}");
+        assert_eq!(verdict(&half, &dragging(0.8, 2.0 * drag)).is_stable(), stable, "half of twice as much");
+        last = stable;
+    }
+    assert!(verdict(&all, &dragging(0.8, 0.004)).is_stable() && !last);
+}
+
+/// What is held with all of the drag either way is held with every part of it.
+#[test]
+fn parts_of_a_drag_are_held_where_all_of_it_is() {
+    let settings = HoldingSettings { drag: 1.0, max_normal_force: Some(10.0), ..Default::default() };
+    let test = test_with(settings);
+    let press = regrasp_physics::Press { max_normal_force: Some(10.0), effort_share: 0.95 };
+    let (mass, p_OCm) = (0.1, Vec3::zeros());
+    let load = regrasp_physics::HeldLoad { mass, p_OCm, length: 0.03, disturbance: (0.0, 0.0), press };
+    let mut random = Random::from_key(9, 0, 0, 0);
+    let mut held = 0;
+    for _ in 0..300 {
+        let grasp = dragging(random.range(0.2, 1.0), random.range(0.0, 0.03));
+        if !verdict(&test, &grasp).is_stable() {
+            continue;
+        }
+        held += 1;
+        let parts: Vec<f64> = (0..3).map(|_| random.range(-1.0, 1.0)).collect();
+        let bearings = load.bearings(&grasp, None, (0.95, 0.95), |i| parts[i]).unwrap();
+        assert!(load.held(&bearings, &grasp.g_O, 1.0, &mut Hint::default()).holds, "{grasp:?} {parts:?}");
+    }
+    assert!((50..290).contains(&held), "both are common: {held}");
 }

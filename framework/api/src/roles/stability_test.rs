@@ -65,9 +65,17 @@ pub struct HoldLoad {
     pub disturbance_force: f64,
     /// The largest disturbing torque (N·m); 0 for none.
     pub disturbance_torque: f64,
+    /// The share of their torsional friction with which contacts drag while they spin (no unit), each one
+    /// way or the other: forces must hold the object whichever way each drags. 0 where contacts spin freely.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub drag: f64,
     /// The largest normal force of one contact (N); absent where the joints' efforts alone bound it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_normal_force: Option<f64>,
+}
+
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
 }
 
 /// Something that anybody can check by arithmetic and that proves a verdict.

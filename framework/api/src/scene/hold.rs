@@ -18,6 +18,13 @@ pub struct HoldDescription {
     /// held beside the weight.
     #[schemars(inner(range(min = 0.0, max = 1e4)), extend("x-unit" = "N"))]
     pub disturbance: [f64; 2],
+    /// The share (0 to 1) of its torsional friction with which a soft finger drags while it spins, as it does
+    /// whenever the object moves: grasps must hold whichever way each finger drags. By default 1 where
+    /// contacts carry torsion; 0 for fingertips that spin freely.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
+    #[schemars(example = 1.0)]
+    pub drag: Option<f64>,
     /// Largest normal force of one contact (N), for fragile objects; where absent the joints' efforts alone
     /// bound it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -32,6 +39,7 @@ impl Default for HoldDescription {
             weight: true,
             friction_factor: FrictionFactor::Share(0.8),
             disturbance: [0.0; 2],
+            drag: None,
             max_normal_force: None,
         }
     }

@@ -20,6 +20,8 @@ pub struct Bearing {
     /// is as much shorter.
     basis: [Vec3; 3],
     lever: f64,
+    /// See [`Friction::drag`].
+    drag: f64,
     pub(crate) mu: f64,
     rows: [Vector4<f64>; MAX_FINGER_JOINTS],
     count: usize,
@@ -49,6 +51,7 @@ impl Bearing {
         map: SMatrix::<f64, 6, 4>::from_array_storage(nalgebra::ArrayStorage([[0.0; 6]; 4])),
         basis: [Vec3::new(0.0, 0.0, 0.0); 3],
         lever: 0.0,
+        drag: 0.0,
         mu: 0.0,
         rows: [Vector4::new(0.0, 0.0, 0.0, 0.0); MAX_FINGER_JOINTS],
         count: 0,
@@ -74,12 +77,18 @@ impl Bearing {
         for (column, force) in basis.iter().enumerate() {
             map.set_column(column, &stacked(force, &(r_O.cross(force) / length)));
         }
+        let drag = friction.drag;
+        if drag != 0.0 {
+            let pressed = map.column(0) + stacked(&Vec3::zeros(), &(n_O * (drag / length)));
+            map.set_column(0, &pressed);
+        }
         map.set_column(3, &stacked(&Vec3::zeros(), &(n_O * (lever / length))));
         let mut rows = [Vector4::zeros(); MAX_FINGER_JOINTS];
         let mut count = 0;
         for joint in efforts.joints() {
             let along = basis.map(|force| joint.column_O.dot(&force));
-            let row = Vector4::new(along[0], along[1], along[2], joint.spin * lever);
+            let pressing = along[0] + joint.spin * drag;
+            let row = Vector4::new(pressing, along[1], along[2], joint.spin * lever);
             let row = row / (joint.limit * press.effort_share);
             if row.amax() > FLAT {
                 rows[count] = row;
@@ -90,7 +99,7 @@ impl Bearing {
         let steepest = rows[..count].iter().map(|row| row[0].abs()).fold(1.0 / most, f64::max);
         let start = if steepest > 0.0 { (0.5 / steepest).min(UNBOUNDED.1) } else { UNBOUNDED.0 };
         let most = if count == 0 { most.min(UNBOUNDED.1) } else { most };
-        Self { map, basis, lever, mu, rows, count, most, start }
+        Self { map, basis, lever, drag, mu, rows, count, most, start }
     }
 
     /// The rows a of the efforts' bounds |a · x| ≤ 1.
@@ -106,7 +115,7 @@ impl Bearing {
     /// The force and torque on the object, in O.
     pub fn force(&self, x: &Exerted) -> ContactForce {
         let force = self.basis[0] * x[0] + self.basis[1] * x[1] + self.basis[2] * x[2];
-        ContactForce { force, spin: x[3] * self.lever }
+        ContactForce { force, spin: x[3] * self.lever + x[0] * self.drag }
     }
 
     /// The share of the friction that a force needs: |(f_t, m/λ)|/(μ f_n); infinite without pressing.

@@ -65,12 +65,14 @@ impl std::ops::Deref for Bearings {
 
 impl HeldLoad {
     /// The contacts of a grasp, but that of `lifted`, with a part of their friction and of their torsional
-    /// friction; `None` where a cone is not elliptic.
+    /// friction; `None` where a cone is not elliptic. `drag` is what part of [`Grasp::drag`] each contact
+    /// drags with, in [-1, 1].
     pub fn bearings(
         &self,
         grasp: &Grasp<'_>,
         lifted: Option<FingerIndex>,
         (part, torsion_part): (f64, f64),
+        drag: impl Fn(usize) -> f64,
     ) -> Option<Bearings> {
         let mut bearings = Bearings { all: [Bearing::NOTHING; MAX_FINGERS], count: 0 };
         for (i, contact) in grasp.contacts().iter().enumerate() {
@@ -78,6 +80,8 @@ impl HeldLoad {
                 continue;
             }
             let friction = Friction::of(&contact.cone)?.scaled(part, torsion_part);
+            let drags = grasp.drag(i);
+            let friction = if drags > 0.0 { friction.dragging(drags * drag(i)) } else { friction };
             let place = (&(contact.p_OC - self.p_OCm), &contact.n_O);
             let efforts = grasp.efforts(i).copied().unwrap_or_default();
             bearings.all[bearings.count] = Bearing::new(place, &friction, &efforts, &self.press, self.length);

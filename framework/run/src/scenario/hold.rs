@@ -8,6 +8,9 @@ use serde_json::Value;
 /// The stability test that does what `[hold]` asks for.
 pub(crate) const HOLDING: &str = "stability-test/holding";
 
+/// The contact model whose contacts drag while they spin, where `[hold]` says nothing else.
+const SOFT_FINGER: &str = "contact-model/soft-finger";
+
 /// The range of `friction_factor`.
 const FACTORS: std::ops::RangeInclusive<f64> = 0.05..=1.0;
 
@@ -17,14 +20,16 @@ pub(super) fn apply(
     content: &ScenarioFile,
     choices: &mut Choices,
 ) -> Result<(), ScenarioError> {
-    let Some(hold) = &content.hold else { return Ok(()) };
-    check(document, content, hold)?;
+    let Some(asked) = &content.hold else { return Ok(()) };
+    check(document, content, asked)?;
     refuse_both(document, content)?;
     if content.plugins.stability_test.id.is_none() && content.plugins.stability_test.settings.is_empty() {
         choices.use_plugin(Slot::StabilityTest, HOLDING);
     }
+    let is_soft = choices.choice(Slot::ContactModel).id == SOFT_FINGER;
+    let hold = &HoldDescription { drag: asked.drag.or(is_soft.then_some(1.0)), ..*asked };
     if choices.choice(Slot::StabilityTest).id != HOLDING {
-        let refused = other_test(hold, &choices.choice(Slot::StabilityTest).id);
+        let refused = other_test(asked, &choices.choice(Slot::StabilityTest).id);
         return refused.map_or(Ok(()), |refusal| Err(document.refused(&refusal)));
     }
     let mut set = |key: &str, value: Value| choices.set(Slot::StabilityTest, key, value);
@@ -32,6 +37,9 @@ pub(super) fn apply(
     set("friction_factor", share(hold).into());
     set("disturbance_force", hold.disturbance[0].into());
     set("disturbance_torque", hold.disturbance[1].into());
+    if let Some(drag) = hold.drag {
+        set("drag", drag.into());
+    }
     if let Some(most) = hold.max_normal_force {
         set("max_normal_force", most.into());
     }
@@ -100,6 +108,7 @@ fn refuse_both(document: &Document, content: &ScenarioFile) -> Result<(), Scenar
         ("friction_factor", "hold.friction_factor"),
         ("disturbance_force", "hold.disturbance"),
         ("disturbance_torque", "hold.disturbance"),
+        ("drag", "hold.drag"),
         ("max_normal_force", "hold.max_normal_force"),
     ];
     let settings = &content.plugins.stability_test.settings;
@@ -132,6 +141,7 @@ pub(crate) fn other_test(hold: &HoldDescription, id: &str) -> Option<Refusal> {
     }
     let asked = [
         (hold.disturbance != [0.0; 2], "disturbance"),
+        (hold.drag.is_some_and(|drag| drag > 0.0), "drag"),
         (hold.max_normal_force.is_some(), "max_normal_force"),
         (hold.friction_factor == FrictionFactor::Most(Most::Most), "friction_factor"),
     ];

@@ -24,6 +24,9 @@ pub(crate) struct Contact {
     pub(crate) mu: f64,
     /// Torsional radius divided by the length.
     pub(crate) gamma: f64,
+    /// The torque about the inward normal, divided by the length, with which a spinning contact drags per unit
+    /// of normal force; 0 where it does not spin.
+    pub(crate) drag: f64,
     /// The tangent along which a grain gives more friction, and how much more; `None` where it is the same
     /// all round.
     pub(crate) more: Option<(Vec3, f64)>,
@@ -36,7 +39,7 @@ impl Contact {
     /// The contact at `r` with the inward unit normal `n` and this cone, torsional radii over `length`;
     /// `None` where the cone is a polyhedron.
     pub(crate) fn new(r: Vec3, n: Vec3, cone: &Cone<'_>, length: f64) -> Option<Self> {
-        let round = |mu: f64, gamma: f64| Self { r, n, mu, gamma: gamma / length, more: None };
+        let round = |mu: f64, gamma: f64| Self { r, n, mu, gamma: gamma / length, drag: 0.0, more: None };
         let grain = match cone {
             Cone::Elliptic { mu, gamma } => return Some(round(*mu, *gamma)),
             Cone::Polyhedral(_) => return None,
@@ -75,7 +78,7 @@ impl Contact {
     /// The wrench (force, torque) of a force in scaled coordinates.
     pub(crate) fn wrench(&self, y: &Force) -> Vector6<f64> {
         let force = self.n * y.normal + self.stretch(&y.tangential);
-        let torque = self.r.cross(&force) + self.n * (self.gamma * y.spin);
+        let torque = self.r.cross(&force) + self.n * (self.gamma * y.spin + self.drag * y.normal);
         stack(&force, &torque)
     }
 
@@ -83,8 +86,9 @@ impl Contact {
     /// torsional with weight `u`.
     fn accumulate(&self, sum: &mut Matrix6<f64>, w: f64, u: f64) {
         let normal = stack(&self.n, &self.r.cross(&self.n));
+        let pressed = stack(&self.n, &(self.r.cross(&self.n) + self.n * self.drag));
         let mu_squared = u * self.mu * self.mu;
-        *sum += normal * normal.transpose() * (w - mu_squared);
+        *sum += pressed * pressed.transpose() * w - normal * normal.transpose() * mu_squared;
         // J Jᵀ with J = [I; [r]×].
         let mut J = SMatrix::<f64, 6, 3>::zeros();
         J.fixed_rows_mut::<3>(0).fill_with_identity();
@@ -182,7 +186,7 @@ impl Correction {
         for (contact, force) in contacts.iter().zip(&mut forces) {
             let v = a + b.cross(&contact.r);
             let v_n = contact.n.dot(&v);
-            force.normal -= v_n;
+            force.normal -= v_n + contact.drag * b.dot(&contact.n);
             force.tangential -= contact.stretch(&(v - contact.n * v_n));
             force.spin -= b.dot(&contact.n) * contact.gamma;
         }

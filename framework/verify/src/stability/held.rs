@@ -22,7 +22,8 @@ impl Row {
     pub(crate) fn of(&self, contact: &Contact, length: f64, unit: f64) -> (f64, Vec3, f64) {
         let scale = unit / self.limit;
         let column = self.column_O * scale;
-        (column.dot(&contact.n), contact.stretch(&column), self.spin * contact.gamma * length * scale)
+        let spin = self.spin * length * scale;
+        (column.dot(&contact.n) + spin * contact.drag, contact.stretch(&column), spin * contact.gamma)
     }
 }
 

@@ -23,15 +23,25 @@ pub(crate) struct HoldingCheck {
     gauge: Gauge,
     load: HoldLoad,
     cone: ConeClaim,
+    /// The claimed torsional radius (m), of which contacts drag a part.
+    torsion: f64,
     weight_H: Vec3,
     center_O: Vec3,
     length: f64,
     /// What forces are divided by (N).
     unit: f64,
-    carried: Option<Vec<Forces>>,
-    solved: f64,
+    /// One for each way in which the contacts may drag.
+    trails: Vec<Trail>,
     failures: usize,
     last: Option<(Held, Vec3)>,
+}
+
+/// What is carried from one grasp to the next: forces, and the slack that the solver found when it was last
+/// asked.
+#[derive(Clone, Default)]
+struct Trail {
+    carried: Option<Vec<Forces>>,
+    solved: f64,
 }
 
 /// A grasp with what is worked out once for all that it must hold.
@@ -55,28 +65,30 @@ impl HoldingCheck {
     /// `None` where the claim has no meaning.
     pub(crate) fn new(claims: &Claims, load: &HoldLoad, weight_H: Vec3) -> Option<Self> {
         let cone = claims.contact.cone?;
-        let HoldLoad { friction_factor, disturbance_force, disturbance_torque, max_normal_force, weight } =
-            *load;
-        let sizes = [disturbance_force, disturbance_torque, max_normal_force.unwrap_or(1.0)];
+        let HoldLoad {
+            friction_factor, disturbance_force, disturbance_torque, max_normal_force, drag, ..
+        } = *load;
+        let sizes = [disturbance_force, disturbance_torque, drag, max_normal_force.unwrap_or(1.0)];
         let sound = sizes.iter().all(|x| *x >= 0.0 && x.is_finite())
             && cone.is_sound()
             && friction_factor > 0.0
             && friction_factor <= 1.0
             && claims.margin.length > 0.0
             && claims.margin.length.is_finite();
-        let weight_H = if weight { weight_H } else { Vec3::zeros() };
+        let weight_H = if load.weight { weight_H } else { Vec3::zeros() };
         let unit = weight_H.norm().max(disturbance_force).max(disturbance_torque / claims.margin.length);
+        let torsion = cone.gamma;
         let cone = cone.scaled(friction_factor);
         (sound && unit > 0.0).then(|| Self {
             gauge: Gauge::new("stability", "force", Side::Above, LEAST_SLACK),
             load: *load,
             cone,
+            torsion,
             weight_H,
             center_O: claims.margin.center_O.into(),
             length: claims.margin.length,
             unit,
-            carried: None,
-            solved: 0.0,
+            trails: Vec::new(),
             failures: 0,
             last: None,
         })
@@ -99,7 +111,7 @@ impl HoldingCheck {
         if self.last.as_ref() == Some(&here) {
             return; // In a regrasp all that holds rests.
         }
-        let found = self.prove(&here.0, &weight_O, None);
+        let found = self.prove_all(leg, &here.0, &weight_O);
         self.last = Some(here);
         self.failures += usize::from(found.is_err());
         let place = || leg.between(state, sample as f64 / SAMPLES as f64);
@@ -118,13 +130,13 @@ impl HoldingCheck {
     ) -> Result<f64, f64> {
         let held = self.held(leg, hand, frames, touches);
         let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
-        (self.carried, self.last, self.solved) = (None, None, 0.0);
+        (self.trails, self.last) = (Vec::new(), None);
         let is_known = forces_O.len() == held.contacts.len() && self.cone.least() > 0.0;
         let known = is_known.then(|| {
             let given: Vec<Vec3> = forces_O.iter().map(|force| force / self.unit).collect();
             scaled(&held.contacts, &given)
         });
-        self.prove(&held, &weight_O, known.as_ref())
+        self.prove(0, &held, &weight_O, known.as_ref())
     }
 
     fn held(
@@ -148,24 +160,55 @@ impl HoldingCheck {
         held
     }
 
+    /// The least slack over the ways in which the contacts may drag: the contacts of a transfer may spin, and
+    /// each then drags by what is claimed, one way or the other. What is held both ways is held for every
+    /// drag between, by a blend of the two forces.
+    fn prove_all(&mut self, leg: &Leg<'_>, held: &Held, weight_O: &Vec3) -> Result<f64, f64> {
+        let drag = self.load.drag * self.torsion / self.length;
+        if leg.moving.is_some() || drag == 0.0 {
+            return self.prove(0, held, weight_O, None);
+        }
+        let mut dragged = held.clone();
+        let mut least = f64::INFINITY;
+        for way in 0..1_usize << held.contacts.len() {
+            for (i, contact) in dragged.contacts.iter_mut().enumerate() {
+                contact.drag = if way >> i & 1 == 0 { drag } else { -drag };
+            }
+            least = least.min(self.prove(way, &dragged, weight_O, None)?);
+        }
+        Ok(least)
+    }
+
     /// The slack with which the grasp is proved to hold the load; `Err` gives what could not be proved.
-    /// Forces that are known to hold the weight may hold more.
-    fn prove(&mut self, held: &Held, weight_O: &Vec3, known: Option<&Forces>) -> Result<f64, f64> {
+    /// Forces that are known to hold the weight may hold more. `way` numbers the trail.
+    fn prove(
+        &mut self,
+        way: usize,
+        held: &Held,
+        weight_O: &Vec3,
+        known: Option<&Forces>,
+    ) -> Result<f64, f64> {
         let grasp = Grasp {
             held,
             shares: self.shares(held),
             correction: Correction::new(&held.contacts).ok_or(f64::NEG_INFINITY)?,
         };
         let wanted = self.wanted(weight_O);
-        if let Some(carried) = self.carried.take()
-            && let Ok(slack) = self.check(&grasp, carried, &wanted)
-            && slack > DWINDLED * self.solved
+        if self.trails.len() <= way {
+            self.trails.resize(way + 1, Trail::default());
+        }
+        let Trail { carried, solved } = std::mem::take(&mut self.trails[way]);
+        if let Some(carried) = carried
+            && let Ok((slack, carried)) = self.check(&grasp, carried, &wanted)
+            && slack > DWINDLED * solved
         {
+            self.trails[way] = Trail { carried: Some(carried), solved };
             return Ok(slack);
         }
         let forces = self.solve(&grasp, &wanted, known)?;
-        self.solved = self.check(&grasp, forces, &wanted)?;
-        Ok(self.solved)
+        let (slack, forces) = self.check(&grasp, forces, &wanted)?;
+        self.trails[way] = Trail { carried: Some(forces), solved: slack };
+        Ok(slack)
     }
 
     /// Forces for each of the wanted wrenches, near to the best ones: those that the solver found for one
@@ -220,14 +263,14 @@ impl HoldingCheck {
         wanted
     }
 
-    /// Brings forces to exactly the wanted wrenches, checks cones and efforts, and carries them on; `Err`
+    /// Brings forces to exactly the wanted wrenches, and checks cones and efforts; `Err`
     /// gives the slack that is too little.
     fn check(
-        &mut self,
+        &self,
         grasp: &Grasp<'_>,
         mut forces: Vec<Forces>,
         wanted: &[Vector6<f64>],
-    ) -> Result<f64, f64> {
+    ) -> Result<(f64, Vec<Forces>), f64> {
         let Grasp { held, correction, .. } = grasp;
         let mut least = f64::INFINITY;
         let steepest = 1.0 + grasp.steepest();
@@ -246,8 +289,7 @@ impl HoldingCheck {
             }
             least = least.min(slack);
         }
-        self.carried = Some(forces);
-        Ok(least)
+        Ok((least, forces))
     }
 
     /// What a joint's effort, over its limit, is of each part of the force at its contact.

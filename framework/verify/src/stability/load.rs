@@ -157,7 +157,7 @@ mod tests {
         let contact = |k: usize| {
             let (sin, cos) = (std::f64::consts::TAU * k as f64 / count as f64).sin_cos();
             let n = Vec3::new(cos, sin, 0.0);
-            Contact { r: n, n: -n, mu, gamma: 0.0, more: None }
+            Contact { r: n, n: -n, mu, gamma: 0.0, drag: 0.0, more: None }
         };
         (0..count).map(contact).collect()
     }
@@ -182,7 +182,7 @@ mod tests {
         // Three fingers push up; one of friction 0.2 cannot pull down.
         let below = [0.0_f64, 2.1, 4.2].map(|angle| {
             let n = Vec3::new(0.6 * angle.cos(), 0.6 * angle.sin(), -0.8);
-            Contact { r: n, n: -n, mu: 0.5, gamma: 0.0, more: None }
+            Contact { r: n, n: -n, mu: 0.5, gamma: 0.0, drag: 0.0, more: None }
         });
         let load = Load { disturbance_force: 1e-3, disturbance_torque: 1e-6, max_normal_force: 10.0 };
         let mut check = LoadCheck::new(&load, Vec3::new(0.0, 0.0, -1.0), LENGTH).unwrap();

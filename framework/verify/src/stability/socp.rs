@@ -192,8 +192,10 @@ impl Problem {
             let forces = [contact.n, u, v, Vec3::zeros()];
             for (k, force) in forces.iter().enumerate() {
                 let mut torque = contact.r.cross(force);
-                if k == 3 {
-                    torque = contact.n * contact.gamma;
+                match k {
+                    0 => torque += contact.n * contact.drag,
+                    3 => torque = contact.n * contact.gamma,
+                    _ => {}
                 }
                 for axis in 0..3 {
                     self.set(axis, OF_CONTACT * i + k, force[axis]);

@@ -3,7 +3,7 @@ use super::{best, socp};
 use regrasp_api::{MAX_FINGERS, Random, Vec3};
 
 fn contact(p: Vec3, outward: Vec3, mu: f64, gamma: f64) -> Contact {
-    Contact { r: p, n: -outward.normalize(), mu, gamma, more: None }
+    Contact { r: p, n: -outward.normalize(), mu, gamma, drag: 0.0, more: None }
 }
 
 /// Three contacts of a cube held across edges: rounding stops the solver before its own tolerances are met.
@@ -148,4 +148,36 @@ fn a_force_is_carried_to_a_grasp_close_by() {
         prove(&on_ball(&directions, 0.01, 0.0), &proof.forces).is_none(),
         "less friction needs another force"
     );
+}
+
+/// Torques of drag are part of what forces balance, in the solver, in the correction and in the proof.
+#[test]
+fn forces_balance_the_drag_of_spinning_contacts() {
+    let held = |drag: f64| {
+        let contact = |k: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / 3.0).sin_cos();
+            Contact { drag, ..contact(Vec3::new(cos, sin, 0.0), Vec3::new(cos, sin, 0.0), 0.8, 0.0) }
+        };
+        let mut contacts: Vec<Contact> = (0..3).map(contact).collect();
+        contacts[1].drag = -drag;
+        contacts
+    };
+    for drag in [0.0, 0.1, 0.3] {
+        let contacts = held(drag);
+        let (forces, slack) = socp::best_forces(&contacts).expect("friction bears it");
+        let proof = prove(&contacts, &forces).expect("and that is proved");
+        assert!(slack > 0.01 && proof.slack > 0.01, "{slack} {}", proof.slack);
+        let torque: Vec3 = contacts
+            .iter()
+            .zip(&proof.forces)
+            .map(|(contact, y)| {
+                let f = contact.n * y.normal + y.tangential * contact.mu;
+                contact.r.cross(&f) + contact.n * (contact.drag * y.normal)
+            })
+            .sum();
+        assert!(torque.norm() < 1e-9, "{torque}");
+    }
+    // No friction bears a drag of more than twice its lever.
+    let contacts = held(2.0);
+    assert!(socp::best_forces(&contacts).is_none_or(|(forces, _)| prove(&contacts, &forces).is_none()));
 }

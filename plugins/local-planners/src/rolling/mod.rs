@@ -30,11 +30,24 @@ pub struct RollingSettings {
     /// How often a step may be halved before the contact counts as lost. Our choice.
     #[schemars(range(min = 0, max = 20))]
     pub halvings: usize,
+    /// How far (rad) a contact that carries torsion may spin in one transfer. A soft finger creeps by some
+    /// millimetres a radian of spin; set down anew it begins from nothing. With point contacts it means
+    /// nothing.
+    #[serde(skip_serializing_if = "is_usual")]
+    #[schemars(range(min = 0.01, max = 100.0), extend("x-unit" = "rad"))]
+    pub spin: f64,
+}
+
+/// The spin that is allowed by default (rad).
+const SPIN: f64 = 0.6;
+
+fn is_usual(spin: &f64) -> bool {
+    *spin == SPIN
 }
 
 impl Default for RollingSettings {
     fn default() -> Self {
-        Self { tolerance_share: 0.5, halvings: 8 }
+        Self { tolerance_share: 0.5, halvings: 8, spin: SPIN }
     }
 }
 
@@ -56,7 +69,8 @@ impl Settings for RollingSettings {}
 ///
 /// Stops at the last valid state: at a joint's limit, out of reach or at a singularity (`reach`), at a
 /// collision, where the grasp is no longer stable, where net slip at a state uses up its share (within a step
-/// the tip may stray along the surface by as much as closure allows across it), and where a contact is lost,
+/// the tip may stray along the surface by as much as closure allows across it), where a contact that carries
+/// torsion has spun as far as it may (`slip` too: that is what comes of it), and where a contact is lost,
 /// or touches at a second place as well (`closure`). In a mild dent it goes on upon the other side, which the
 /// fingertip touches at that instant, too: the contact jumps, by [`regrasp_api::LONGEST_JUMP`] at most, and
 /// the fingertip does not.
@@ -94,6 +108,7 @@ impl Rolling {
             radius: task.hand.fingertip_radius(),
             closure: self.settings.tolerance_share * task.tolerances.closure,
             slip: self.settings.tolerance_share * task.tolerances.slip,
+            spin: if carries_torsion(task, from) { self.settings.spin } else { f64::INFINITY },
             reach: task.resolution.transfer_step,
             travel: largest_travel(task.resolution),
         }
@@ -149,6 +164,15 @@ impl Rolling {
         }
         Ok(Reached { end: state.q, fraction: state.s, stop })
     }
+}
+
+/// Whether a contact carries torsion, and so drags and creeps while it spins.
+fn carries_torsion(task: &Task<'_>, q: &Configuration) -> bool {
+    let mu = task.planning_friction();
+    let contacts = q.contacts.iter().filter_map(|(finger, contact)| Some((finger, contact.as_ref()?)));
+    contacts
+        .into_iter()
+        .any(|(finger, contact)| task.contact_model.cone(finger, contact, mu).carries_torsion())
 }
 
 /// Makes `next` the next valid state, or says why there is none: stability before collision, because it costs

@@ -17,6 +17,8 @@ pub(crate) struct Roller<'a> {
     pub closure: f64,
     /// Largest net slip (m).
     pub slip: f64,
+    /// Largest spin (rad) of a contact; infinite where contacts carry no torsion.
+    pub spin: f64,
     /// The most (m) that a fingertip's centre moves over the object in one step.
     pub reach: f64,
     /// The most (m) that a finger travels in one step.

@@ -16,6 +16,8 @@ pub(crate) struct State {
     pub s: f64,
     /// Net slip of every contact since the start (m, in O).
     pub slip_O: PerFinger<Vec3>,
+    /// Net spin of every contact about its normal since the start (rad), where it is bounded.
+    pub spin: PerFinger<f64>,
     /// Orientation of every holding fingertip in O.
     pub R_OF: PerFinger<Rotation>,
     /// Joint speeds (per motion) with which the fingers roll on.
@@ -40,6 +42,7 @@ impl Roller<'_> {
             q: from.clone(),
             s: if self.motion.is_still() { 1.0 } else { 0.0 },
             slip_O: PerFinger::filled(count, Vec3::zeros()),
+            spin: PerFinger::filled(count, 0.0),
             R_OF: PerFinger::filled(count, Rotation::identity()),
             rates: from.joints,
             longest: f64::INFINITY,
@@ -97,7 +100,10 @@ impl Roller<'_> {
             self.aim(next, finger, &tip);
             let slip_O = self.slip_of(state, next, finger);
             next.slip_O[finger] += slip_O;
-            if next.slip_O[finger].norm() > self.slip {
+            if self.spin.is_finite() {
+                next.spin[finger] += self.spin_of(state, next, finger);
+            }
+            if next.slip_O[finger].norm() > self.slip || next.spin[finger].abs() > self.spin {
                 return Err(Failure::Stop(Reason::Slip));
             }
         }
@@ -146,6 +152,12 @@ impl Roller<'_> {
             X_HMid,
         };
         if self.opens(&span) { Err(Failure::Finer) } else { Ok((joints, end)) }
+    }
+
+    /// Spin (rad) over one step: how far the fingertip turns on the object about the contact's normal.
+    fn spin_of(&self, a: &State, b: &State, finger: FingerIndex) -> f64 {
+        let turn_O = (b.R_OF[finger] * a.R_OF[finger].inverse()).scaled_axis();
+        turn_O.dot(&(touching(&a.q, finger).n_O + touching(&b.q, finger).n_O).normalize())
     }
 
     /// Slip (m, in O) over one step: how far the fingertip's material point at the contact moves along the
