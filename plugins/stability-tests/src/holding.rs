@@ -132,9 +132,10 @@ impl Holding {
             Some(bearings) => Ok(Held::Round(bearings)),
             None if self.drags(grasp) => Err(CallError::Unsupported {
                 plugin: ID.into(),
-                reason: "polyhedral cones of contacts that drag while they spin; set `hold.drag` = 0, or choose \
+                reason:
+                    "polyhedral cones of contacts that drag while they spin; set `hold.drag` = 0, or choose \
                          a contact model with elliptic cones"
-                    .into(),
+                        .into(),
             }),
             None => Ok(Held::Edged(self.load.edged(grasp, lifted, self.parts()))),
         }

@@ -283,6 +283,8 @@ fn most_power_of_edges((n_O, mu, bounds): &(Vec3, f64, EffortBounds), velocity: 
         force.dot(velocity) / shares.fold(1e-12, f64::max)
     };
     (0..8).map(of_edge).fold(0.0, f64::max)
+}
+
 /// Three contacts on the equator of the ball that drag with up to `drag` (m).
 fn dragging(mu: f64, drag: f64) -> Grasp<'static> {
     let mut grasp = Grasp::new(Vec3::z() * -9.81);

@@ -1,8 +1,8 @@
 //! The same where some cones are polyhedra: a contact's force is a sum of its cone's edges with weights above
 //! zero, and Newton's method goes to the analytic centre of the weights that balance.
 
-use super::bearing::{FLAT, Press, UNBOUNDED, stacked};
 use super::barrier::slopes;
+use super::bearing::{FLAT, Press, UNBOUNDED, stacked};
 use crate::force::ContactForce;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix6, Matrix6xX, Vector6};
 use regrasp_api::{Cone, ConeEdge, EffortBounds, Vec3, tangents};

@@ -29,15 +29,16 @@ impl EdgeHold {
     /// For an object of this weight (N, in H); torques count over `length` (m). `None` where the claim has no
     /// meaning.
     pub(super) fn new(load: &HoldLoad, weight_H: Vec3, length: f64) -> Option<Self> {
-        let HoldLoad { friction_factor, disturbance_force, disturbance_torque, max_normal_force, weight } =
-            *load;
-        let sizes = [disturbance_force, disturbance_torque, max_normal_force.unwrap_or(1.0)];
+        let HoldLoad { friction_factor, disturbance_force, disturbance_torque, .. } = *load;
+        let sizes = [disturbance_force, disturbance_torque, load.max_normal_force.unwrap_or(1.0)];
         let sound = sizes.iter().all(|x| *x >= 0.0 && x.is_finite())
             && friction_factor > 0.0
             && friction_factor <= 1.0
             && length > 0.0
-            && length.is_finite();
-        let weight_H = if weight { weight_H } else { Vec3::zeros() };
+            && length.is_finite()
+            // What drags while it spins is judged by elliptic cones alone.
+            && load.drag == 0.0;
+        let weight_H = if load.weight { weight_H } else { Vec3::zeros() };
         let unit = weight_H.norm().max(disturbance_force).max(disturbance_torque / length);
         (sound && unit > 0.0).then(|| Self {
             load: *load,
@@ -193,6 +194,7 @@ mod tests {
             friction_factor: 1.0,
             disturbance_force: 0.0,
             disturbance_torque: 0.0,
+            drag: 0.0,
             max_normal_force,
         };
         let mut hold = EdgeHold::new(&load, Vec3::new(0.0, 0.0, -9.81 * mass), 0.03).unwrap();
@@ -217,6 +219,7 @@ mod tests {
             friction_factor: 1.0,
             disturbance_force: 0.5,
             disturbance_torque: 0.0,
+            drag: 0.0,
             max_normal_force: None,
         };
         let mut hold = EdgeHold::new(&load, Vec3::new(0.0, 0.0, -9.81), 0.03).unwrap();
@@ -235,6 +238,7 @@ mod tests {
             friction_factor: 0.8,
             disturbance_force: 0.1,
             disturbance_torque: 0.001,
+            drag: 0.0,
             max_normal_force: Some(5.0),
         };
         let sound = |load: HoldLoad| EdgeHold::new(&load, Vec3::z(), 0.03).is_some();
@@ -243,5 +247,6 @@ mod tests {
         assert!(!sound(HoldLoad { friction_factor: 1.2, ..good }));
         assert!(!sound(HoldLoad { disturbance_force: f64::NAN, ..good }));
         assert!(!sound(HoldLoad { max_normal_force: Some(-1.0), ..good }));
+        assert!(!sound(HoldLoad { drag: 0.5, ..good }), "edges know no drag");
     }
 }
