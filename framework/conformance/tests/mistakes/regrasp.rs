@@ -15,10 +15,7 @@ impl Mistaken {
     /// What of the scene it looks at.
     fn sees(&self) -> fn(&BodyPair) -> bool {
         match self.0.as_str() {
-            "fingertips-alone" => |pair| !matches!(pair, (Body::Link(..), _) | (_, Body::Link(..))),
-            "no-palm" => |pair| !matches!(pair, (Body::Palm, _) | (_, Body::Palm)),
             "no-obstacles" => |pair| !matches!(pair, (Body::Obstacle(_), _) | (_, Body::Obstacle(_))),
-            "no-links-of-others" => |pair| !matches!(pair, (Body::Link(..), Body::Link(..))),
             _ => |_| true,
         }
     }
@@ -139,8 +136,6 @@ fn caught() {
     crate::judge(
         &entry,
         &[
-            ("fingertips-alone", "regrasp-collision-free"),
-            ("no-palm", "regrasp-collision-free"),
             ("no-obstacles", "regrasp-collision-free"),
             ("cannot-release", "regrasp-succeeds"),
             ("cannot-place", "regrasp-succeeds"),

@@ -1,8 +1,8 @@
 //! Problems for local planners: starts and targets.
 
 use super::places::{
-    around, at_rest, beside_a_pin, clasp, closed, on_ball, on_directions, outside, ring, slack, somewhere,
-    turned, two_soft_ones,
+    around, at_rest, beside_a_pin, clasp, closed, on_ball, outside, ring, slack, somewhere, turned,
+    two_soft_ones,
 };
 use crate::calls::random;
 use crate::fixtures::{Bench, to_hand};
@@ -227,7 +227,6 @@ fn regrasps() -> Vec<Case> {
     let resting = at_rest(free, &from, 0);
     cases.push(regrasp(free, from.clone(), &resting, 0, None));
     cases.push(regrasp(free, resting, &to, 0, None));
-    cases.extend([Bench::pinned_palm(), Bench::pinned_scene()].into_iter().filter_map(past_a_pin));
     // Between ball and wall, and with a finger that the grasp needs.
     let [from, to] = around(1.0).map(|directions| on_ball(walled, directions));
     cases.push(regrasp(walled, from, &to, 0, None));
@@ -252,18 +251,6 @@ fn regrasps() -> Vec<Case> {
     }
     cases.extend(over_an_edge());
     cases
-}
-
-/// The first finger from one side of a pin to the other, the tip far above it: its links cannot pass.
-fn past_a_pin(bench: &'static Bench) -> Option<Case> {
-    let [from, to] = [1.0, -1.0].map(|side| {
-        let first = [0.6, 0.7 * side, 0.39];
-        on_directions(bench, [first, [0.0, 1.0, 0.1], [-1.0, 0.1, 0.1], [0.1, -1.0, 0.0]])
-    });
-    let (from, to) = (from?, to?);
-    let free =
-        |q: &Configuration| bench.task().clearance.configuration_free(q, bench.fingers(), true).is_ok();
-    (free(&from) && free(&to)).then(|| regrasp(bench, from, &to, 0, None))
 }
 
 /// One finger of a clasp from a wide face of the bar to a narrow one, and the other way round.

@@ -60,7 +60,7 @@ pub(super) fn on_ball(bench: &Bench, directions: [[f64; 3]; 4]) -> Configuration
 }
 
 /// Four fingertips on a ball in these directions; `None` where one does not reach.
-pub(super) fn on_directions(bench: &Bench, directions: [[f64; 3]; 4]) -> Option<Configuration> {
+fn on_directions(bench: &Bench, directions: [[f64; 3]; 4]) -> Option<Configuration> {
     let contact = |finger: FingerIndex| {
         let u = Vec3::from(directions[finger.index()]).normalize();
         Some(bench.surface.project(&(u * 0.05), None).contact)
