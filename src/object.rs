@@ -21,8 +21,8 @@ A scenario names the file itself: `shape = { kind = \"mesh\", file = \"part.stl\
 `--repair` makes what differs by rounding \
 one, leaves facets without area out and turns bodies the right way round. Where that is not enough, it makes \
 the surface anew: closed, \
-through the file's facets where they are, with holes closed and details lost that are finer than a hundredth of \
-the size; it says so.\n\n\
+through the file's facets where they are, with holes closed and details lost that are finer than a \
+hundredth of the size; it says so.\n\n\
 Examples:\n  regrasp object part.stl --scale 0.001\n  regrasp object scan.ply --fingertip-radius 0.008\n  \
 regrasp object part.stl --scale 0.001 --repair -o clean.stl")]
 pub struct ObjectArgs {

@@ -44,8 +44,8 @@ pub enum BodyFault {
     },
     /// A surface crosses itself.
     #[error(
-        "the surface crosses itself in {count} places, the first near {at:.4?}; repair the mesh there, or let \
-         `regrasp object FILE --repair -o clean.stl` make a closed surface of it"
+        "the surface crosses itself in {count} places, the first near {at:.4?}; repair the mesh there, or \
+         let `regrasp object FILE --repair -o clean.stl` make a closed surface of it"
     )]
     Crossing {
         /// How many pairs of facets cross.
@@ -55,7 +55,8 @@ pub enum BodyFault {
     },
     /// Two facets lie back to back.
     #[error(
-        "the surface folds back on itself near {at:.4?}, a wall without thickness; remove it or give it some, \
+        "the surface folds back on itself near {at:.4?}, a wall without thickness; remove it or give it \
+         some, \
          or let `regrasp object FILE --repair -o clean.stl` make a closed surface of it"
     )]
     Fold {
@@ -129,9 +130,9 @@ impl RigidBody {
 
 /// The mesh as one rigid object, or why it is none.
 ///
-/// Bodies that overlap, or touch by faces, are united. A body within another is part of it and left out; a surface that looks
-/// inward within a body is a hollow. Several bodies that do not touch pass as an `assembly` only. Cost: about
-/// 3 µs a facet.
+/// Bodies that overlap, or touch by faces, are united. A body within another is part of it and left out; a
+/// surface that looks inward within a body is a hollow. Several bodies that do not touch pass as an
+/// `assembly` only. Cost: about 3 µs a facet.
 pub fn rigid_body(mesh: Mesh, assembly: bool) -> Result<RigidBody, BodyFault> {
     let (parts, part_of) = parts(&mesh);
     match crossing::check(&mesh, &part_of, parts.len()) {

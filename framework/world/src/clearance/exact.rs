@@ -70,18 +70,6 @@ impl MeshSolid {
         if projection.is_inside { -distance } else { distance }
     }
 
-    /// A facet at most so far (m) from a point, the nearest one, if there is one.
-    pub fn facet_within(&self, p: &Vec3, distance: f64) -> Option<u32> {
-        let near =
-            self.surface.project_local_point_and_get_location_with_max_dist(to_glam(p), false, distance);
-        near.map(|(_, (facet, _))| facet)
-    }
-
-    /// How far (m) a point is from a facet.
-    pub fn distance_from(&self, facet: u32, p: &Vec3) -> f64 {
-        self.surface.triangle(facet).distance_to_local_point(to_glam(p), false)
-    }
-
     /// Whether the rod, in the mesh's frame, is farther from the solid than `clear` (m).
     pub fn clear_of_rod(&self, rod: &Rod, clear: f64) -> bool {
         let radius = rod.radius + clear;

@@ -3,8 +3,8 @@
 use super::winding::Winding;
 use regrasp_api::{Mesh, Vec3};
 
-/// Facets farther off than this many steps do not say where the surface is: holes are closed half way. An edge
-/// of a tetrahedron that goes through a facet has no end as far from it.
+/// Facets farther off than this many steps do not say where the surface is: holes are closed half way. An
+/// edge of a tetrahedron that goes through a facet has no end as far from it.
 const NEAR: f64 = 1.8;
 /// No value is nearer to zero than this many steps: the surface keeps off the grid's own points.
 const LEAST: f64 = 0.04;

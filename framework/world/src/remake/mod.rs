@@ -44,9 +44,9 @@ impl Remade {
     pub fn remark(&self) -> String {
         let [step, median, most] = [self.step, self.off.0, self.off.1].map(|x| 1e3 * x);
         format!(
-            "the surface was made anew, closed, on a grid of {step:.3} mm: details and walls thinner than that \
-             are lost; it is within {median:.3} mm of the file's facets in the median, and {most:.3} mm at \
-             most, where holes were closed"
+            "the surface was made anew, closed, on a grid of {step:.3} mm: details and walls thinner than \
+             that are lost; it is within {median:.3} mm of the file's facets in the median, and {most:.3} \
+             mm at most, where holes were closed"
         )
     }
 }

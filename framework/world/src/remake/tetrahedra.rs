@@ -4,8 +4,8 @@ use super::grid::Grid;
 use regrasp_api::Vec3;
 use std::collections::HashMap;
 
-/// The six ways from a cell's lowest corner to its highest along its edges, by axes: each is a tetrahedron, and
-/// cells side by side are cut alike where they meet.
+/// The six ways from a cell's lowest corner to its highest along its edges, by axes: each is a tetrahedron,
+/// and cells side by side are cut alike where they meet.
 const WAYS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 
 /// Corners and triangles, looking to where values are positive.

@@ -65,11 +65,11 @@ impl Touch {
         let area: f64 = (0..twin.facets().len() as u32).map(|facet| twin.area(facet)).sum();
         let spacing = (SPACING * self.radius).max((area / MOST_PLACES).sqrt());
         let deepest = vec![0.0; twin.facets().len()];
-        let mut range = Range { touch: self, own, most, above: 0.0, below: 0.0, deepest, last: 0 };
+        let mut range = Range { touch: self, own, most, above: 0.0, below: 0.0, deepest };
         places(twin, self.radius, spacing, &mut |facet, p, n| range.visit(facet, p, n));
         for facet in range.close() {
             let n = twin.normal(facet);
-            on_facet(twin.corners(facet), spacing / CLOSER, |p| range.visit_again(facet, p, &n));
+            on_facet(twin.corners(facet), spacing / CLOSER, |p| range.visit(facet, p, &n));
         }
         range.is_within().then_some((range.above, range.below))
     }
@@ -86,8 +86,6 @@ struct Range<'t> {
     below: f64,
     /// The largest gap or depth on each facet (m), whether the ball can be there or not.
     deepest: Vec<f64>,
-    /// The facet of the mesh that was near last.
-    last: u32,
 }
 
 impl Range<'_> {
@@ -105,23 +103,6 @@ impl Range<'_> {
         if (gap > self.above || -gap > self.below) && self.is_free(p, n) {
             self.above = self.above.max(gap);
             self.below = self.below.max(-gap);
-        }
-    }
-
-    /// The same where the outcome is likely to be known: exact distances are asked for only where a ball comes
-    /// nearer than any before, or farther.
-    fn visit_again(&mut self, facet: u32, p: &Vec3, n: &Vec3) {
-        let center = p + n * self.touch.radius;
-        let solid = &self.touch.solid;
-        let far = self.touch.radius + self.above;
-        let is_known = solid.facet_within(&center, self.touch.radius - self.below).is_none()
-            && (solid.distance_from(self.last, &center) <= far
-                || solid.facet_within(&center, far).is_some_and(|near| {
-                    self.last = near;
-                    true
-                }));
-        if !is_known {
-            self.visit(facet, p, n);
         }
     }
 
