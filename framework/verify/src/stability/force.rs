@@ -86,9 +86,12 @@ impl Contact {
     /// torsional with weight `u`.
     fn accumulate(&self, sum: &mut Matrix6<f64>, w: f64, u: f64) {
         let normal = stack(&self.n, &self.r.cross(&self.n));
-        let pressed = stack(&self.n, &(self.r.cross(&self.n) + self.n * self.drag));
         let mu_squared = u * self.mu * self.mu;
-        *sum += pressed * pressed.transpose() * w - normal * normal.transpose() * mu_squared;
+        *sum += normal * normal.transpose() * (w - mu_squared);
+        if self.drag != 0.0 {
+            let pressed = stack(&self.n, &(self.r.cross(&self.n) + self.n * self.drag));
+            *sum += (pressed * pressed.transpose() - normal * normal.transpose()) * w;
+        }
         // J Jᵀ with J = [I; [r]×].
         let mut J = SMatrix::<f64, 6, 3>::zeros();
         J.fixed_rows_mut::<3>(0).fill_with_identity();
