@@ -31,7 +31,8 @@ def replayed(plan):
 def main():
     arrived, ran = 0, 0
     print("| object | arrives | in the end off by | segments | what happened |\n|---|---|---|---|---|")
-    plans = [path for path in sorted(Path(sys.argv[1]).glob("*.json")) if not path.stem.endswith((".partial", ".rejected"))]
+    others = (".partial", ".rejected", ".contact-surface")
+    plans = [path for path in sorted(Path(sys.argv[1]).glob("*.json")) if not path.stem.endswith(others)]
     for plan in plans:
         verdict, told = replayed(plan)
         word = {True: "yes", False: "no", None: "-"}[verdict]
