@@ -33,8 +33,8 @@ pub fn grasp_forces(
 /// The same where contacts with torsional friction drag while they spin, as they do in every transfer: there
 /// forces are chosen that balance the drag too, and none that a state brings is taken.
 ///
-/// A spinning contact's torque ([`crate::ContactForce::spin`]) is its normal force times the torsional radius,
-/// in the direction of its spin, built up over the first 0.02 rad of it.
+/// A spinning contact's torque ([`crate::ContactForce::spin`]) is its normal force times the torsional
+/// radius, in the direction of its spin, built up over the first 0.02 rad of it.
 pub fn dragged_forces(
     (hand, object, g_H): (&dyn Hand, &ObjectModel, Vec3),
     friction: Friction,

@@ -1,7 +1,8 @@
 //! Chooses grasp forces within friction cones and the joints' efforts, and simulates transfers and whole
 //! motions in rapier3d: the hand as jointed bodies driven by motors, the object free under gravity.
 //!
-//! [`grasp_forces`], [`dragged_forces`] and [`creep`] need no simulator; everything else is behind the feature `rapier`.
+//! [`grasp_forces`], [`dragged_forces`] and [`creep`] need no simulator; everything else is behind the
+//! feature `rapier`.
 //!
 //! What is simulated:
 //! - each finger as a chain of bodies with the hand's joint axes, in reduced coordinates (no joint can come

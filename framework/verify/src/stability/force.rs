@@ -24,8 +24,8 @@ pub(crate) struct Contact {
     pub(crate) mu: f64,
     /// Torsional radius divided by the length.
     pub(crate) gamma: f64,
-    /// The torque about the inward normal, divided by the length, with which a spinning contact drags per unit
-    /// of normal force; 0 where it does not spin.
+    /// The torque about the inward normal, divided by the length, with which a spinning contact drags per
+    /// unit of normal force; 0 where it does not spin.
     pub(crate) drag: f64,
     /// The tangent along which a grain gives more friction, and how much more; `None` where it is the same
     /// all round.
