@@ -45,6 +45,11 @@ impl AtlasHand {
         self.description.finger.len() < HARD
     }
 
+    /// Whether its fingertips roll; points stay where they are set down.
+    pub fn rolls(&self) -> bool {
+        self.description.fingertip.is_ball()
+    }
+
     /// How many fingers it has.
     pub fn fingers(&self) -> usize {
         self.description.finger.len()
@@ -60,6 +65,12 @@ mod tests {
         let text = AtlasHand::load("alegro-like").unwrap_err().to_string();
         assert!(text.contains("allegro-like"), "{text}");
         assert!(AtlasHand::load("no/such/hand.toml").is_err());
+    }
+
+    #[test]
+    fn points_do_not_roll() {
+        assert!(!AtlasHand::load("free-points").unwrap().rolls());
+        assert!(AtlasHand::load("four-finger").unwrap().rolls());
     }
 
     #[test]

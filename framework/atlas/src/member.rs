@@ -100,7 +100,10 @@ impl Member {
             scenario["hold"] = json!({});
         }
         if hand.is_soft() {
-            scenario["plugins"] = json!({ "contact-model": { "use": "contact-model/soft-finger" } });
+            scenario["plugins"]["contact-model"]["use"] = json!("contact-model/soft-finger");
+        }
+        if !hand.rolls() {
+            scenario["plugins"]["local-planner"]["transfer"]["use"] = json!("local-planner/fixed-point");
         }
         scenario.to_string()
     }
