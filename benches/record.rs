@@ -1,5 +1,5 @@
-//! A record of speed to set beside another: every built-in scenario with many seeds, planning, verification and
-//! whole processes, and how near planning is to the least that it could cost.
+//! A record of speed to set beside another: every built-in scenario with many seeds, planning, verification
+//! and whole processes, and how near planning is to the least that it could cost.
 //!
 //! `cargo bench --bench record -- [--seeds N] [-o FILE] [SCENARIO…]` prints a table and writes JSON;
 //! `tests/outside/bench_compare.py OLD NEW` sets two records side by side. Leave the machine alone meanwhile.

@@ -225,7 +225,8 @@ impl Summary<'_> {
                 "most grasps are not stable: grasps are found at friction {needed}, {given} is given; {fix}"
             ),
             Some(Needed::ForPlan(needed)) => format!(
-                "nearly all grasps are not stable: at friction {needed} there is a plan, {given} is given; {fix}"
+                "nearly all grasps are not stable: at friction {needed} there is a plan, {given} is given; \
+                    {fix}"
             ),
             None => regrasp::advice(self.run),
         };

@@ -30,7 +30,10 @@ pub enum JournalError {
         cause: io::Error,
     },
     /// The disk is full.
-    #[error("`{}` cannot grow: no space is left there; free some, and give the same command again", path.display())]
+    #[error(
+        "`{}` cannot grow: no space is left there; free some, and give the same command again",
+        path.display()
+    )]
     DiskFull {
         /// Which file.
         path: PathBuf,

@@ -106,8 +106,8 @@ fn on_surface(task: &Task<'_>, p_OC: regrasp_api::Vec3) -> Result<Contact, Strin
     Ok(task.surface.project(&lifted, Some(projection.contact.facet)).contact)
 }
 
-/// The contact as the fingertip of the given joints has it, where that touches at this very point: on an edge a
-/// point alone does not say which way the fingertip leans.
+/// The contact as the fingertip of the given joints has it, where that touches at this very point: on an edge
+/// a point alone does not say which way the fingertip leans.
 fn leaning(task: &Task<'_>, q: &Configuration, finger: FingerIndex, contact: Contact) -> Contact {
     let p_HF = task.hand.tip_center(finger, &q.joints[finger]);
     let p_OF = q.X_HO.inverse_transform_point(&p_HF.into()).coords;

@@ -6,8 +6,8 @@ use regrasp_run::scenario::Scenario;
 use serde_json::json;
 use std::path::Path;
 
-/// Opens the journal of this protocol, run in this way, or begins it; the trials that have ended. `anew` throws
-/// away what there is. Refuses that of other problems: files may have changed since.
+/// Opens the journal of this protocol, run in this way, or begins it; the trials that have ended. `anew`
+/// throws away what there is. Refuses that of other problems: files may have changed since.
 pub fn journal(
     path: &Path,
     protocol: &Protocol,

@@ -27,9 +27,9 @@ impl<const N: usize> Ldl<N> {
                 return None;
             }
             (pivots[j], made.inverse[j]) = (pivot, 1.0 / pivot);
-            for i in j + 1..N {
-                let entry = (0..j).fold(matrix[i][j], |left, k| left - made.lower[i][k] * scaled[k]);
-                made.lower[i][j] = entry * made.inverse[j];
+            for row in &mut made.lower[j + 1..] {
+                let entry = (0..j).fold(row[j], |left, k| left - row[k] * scaled[k]);
+                row[j] = entry * made.inverse[j];
             }
         }
         Some(made)

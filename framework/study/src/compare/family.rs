@@ -183,9 +183,9 @@ pub(super) fn judge(asked: Vec<Asked>) -> Family {
 /// The share of the level that goes to what a study is made for: whether problems are solved, and how fast.
 pub const FOREMOST: f64 = 0.75;
 
-/// The weights of hypotheses in the correction: those on solved runs and planning time, which come second here,
-/// share [`FOREMOST`] of the level, and never have less than the others, so that a study of twenty seeds which
-/// asks everything still shows what it is made for.
+/// The weights of hypotheses in the correction: those on solved runs and planning time, which come second
+/// here, share [`FOREMOST`] of the level, and never have less than the others, so that a study of twenty
+/// seeds which asks everything still shows what it is made for.
 fn weights<'m>(tested: impl Iterator<Item = &'m Measure>) -> [f64; 2] {
     let (mut foremost, mut others) = (0.0_f64, 0.0_f64);
     tested.for_each(|measure| *(if is_foremost(measure) { &mut foremost } else { &mut others }) += 1.0);

@@ -4,7 +4,8 @@
 /// multiple test procedure", Scandinavian Journal of Statistics 1979, section 4: with weights): calling all
 /// below 0.05 a difference is wrong anywhere in at most 5 % of studies.
 ///
-/// Each is a p-value and its weight, above 0: the share of the level that it gets before the others are known.
+/// Each is a p-value and its weight, above 0: the share of the level that it gets before the others are
+/// known.
 pub fn holm(tests: &[(f64, f64)]) -> Vec<f64> {
     let mut left: f64 = tests.iter().map(|(_, weight)| weight).sum();
     let mut corrected = vec![0.0; tests.len()];
@@ -19,12 +20,13 @@ pub fn holm(tests: &[(f64, f64)]) -> Vec<f64> {
     corrected
 }
 
-/// The level at which Holm's method meets each test, in the given order: `alpha` times its share of the weights
-/// of those that are not yet refused. Those that are not refused share the level of the first of them.
+/// The level at which Holm's method meets each test, in the given order: `alpha` times its share of the
+/// weights of those that are not yet refused. Those that are not refused share the level of the first of
+/// them.
 ///
 /// An interval of a hypothesis at its level leaves out zero exactly where the hypothesis is refused. More
-/// hypotheses that cannot be refused, with these `others` as their weights' sum, share the level of those that
-/// are not. The second result is that level for a weight of 1.
+/// hypotheses that cannot be refused, with these `others` as their weights' sum, share the level of those
+/// that are not. The second result is that level for a weight of 1.
 pub fn holm_levels(tests: &[(f64, f64)], others: f64, alpha: f64) -> (Vec<f64>, f64) {
     let mut left: f64 = tests.iter().map(|(_, weight)| weight).sum();
     let mut levels = vec![None; tests.len()];

@@ -158,8 +158,8 @@ pub fn family_text(study: &Study, family: &Family, name: &dyn Fn(&str) -> String
     };
     format!(
         "One family of hypotheses: {pairs}{effects}, in every measure, on every scenario: {all}, of which {} \
-         could be told apart by a test and are corrected together (Holm; three quarters of the level go to solved \
-         runs and planning time). A difference counts as shown below p = \
+         could be told apart by a test and are corrected together (Holm; three quarters of the level go to \
+         solved runs and planning time). A difference counts as shown below p = \
          0.05; as practically none within {} of the first variant's median.",
         family.tested,
         percent(study.hypotheses.band)
