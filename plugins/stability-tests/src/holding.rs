@@ -33,7 +33,6 @@ pub struct HoldingSettings {
     pub disturbance_torque: f64,
     /// The share of their torsional friction with which contacts drag while they spin, each one way or the
     /// other, and which the others must balance; `[hold]` sets it for soft fingers. By default none.
-    #[serde(skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1"))]
     pub drag: f64,
     /// Largest normal force of one contact (N); where absent the joints' efforts alone bound it.
@@ -59,10 +58,6 @@ impl Default for HoldingSettings {
             reserve: 0.05,
         }
     }
-}
-
-fn is_zero(x: &f64) -> bool {
-    *x == 0.0
 }
 
 impl Settings for HoldingSettings {}

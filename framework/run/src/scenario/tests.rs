@@ -289,8 +289,8 @@ fn hand_files_are_found_beside_the_scenario_and_checked() {
         load(path.to_str().unwrap(), &registry())
     };
     assert!(load_with(hand).unwrap().remarks.is_empty());
-    let fast = load_with(&hand.replacen("velocity = 4.0", "velocity = 1e9", 1)).unwrap();
-    assert_says(&fast.remarks.join("\n"), &["`east-abduction`: velocity 1e9 rad/s, no finger is as fast"]);
+    let fast = load_with(&hand.replacen("velocity = 4.0", "velocity = 1e5", 1)).unwrap();
+    assert_says(&fast.remarks.join("\n"), &["east-abduction", "no finger is as fast"]);
     let wrong = hand.replacen("upper = 1.4", "upper = -1.4", 1);
     assert_says(&load_with(&wrong).err().unwrap().to_string(), &["must be less than", " | lower = -1.2"]);
     let wrong = hand.replacen("fingertip_radius", "finger_tip_radius", 1);

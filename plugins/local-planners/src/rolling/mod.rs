@@ -33,17 +33,12 @@ pub struct RollingSettings {
     /// How far (rad) a contact that carries torsion may spin in one transfer. A soft finger creeps by some
     /// millimetres a radian of spin; set down anew it begins from nothing. With point contacts it means
     /// nothing.
-    #[serde(skip_serializing_if = "is_usual")]
     #[schemars(range(min = 0.01, max = 100.0), extend("x-unit" = "rad"))]
     pub spin: f64,
 }
 
 /// The spin that is allowed by default (rad).
 const SPIN: f64 = 0.6;
-
-fn is_usual(spin: &f64) -> bool {
-    *spin == SPIN
-}
 
 impl Default for RollingSettings {
     fn default() -> Self {
