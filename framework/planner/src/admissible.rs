@@ -58,7 +58,8 @@ impl Admissible for Leavable {
         }
         let enough = grasp.contacts().len().saturating_sub(1);
         // More contacts never make a grasp unstable: where n - 1 subsets are stable the whole is.
-        if task.stability.liftable(&grasp, enough, context)?.len() >= enough.max(1) {
+        let liftable = task.stability.liftable(&grasp, enough, context)?;
+        if liftable.len() >= enough.max(1) {
             // At rest; while the object moves, contacts may spin and their torsion is gone.
             return Ok(if holds_in_transfers(task, q, &grasp, context)? {
                 None
@@ -66,8 +67,9 @@ impl Admissible for Leavable {
                 Some(Reason::Stability)
             });
         }
-        let whole = task.stability.test(&grasp, &mut Default::default(), context)?;
-        Ok(Some(if whole.is_stable() { Reason::Liftable } else { Reason::Stability }))
+        let stable = !liftable.is_empty()
+            || task.stability.test(&grasp, &mut Default::default(), context)?.is_stable();
+        Ok(Some(if stable { Reason::Liftable } else { Reason::Stability }))
     }
 }
 
