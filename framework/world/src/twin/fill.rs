@@ -10,6 +10,7 @@ use super::places::on_facet;
 use super::touch::Touch;
 use crate::clearance::Field;
 use regrasp_api::{Mesh, Vec3};
+use std::cell::Cell;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -35,6 +36,8 @@ struct Fill<'a> {
     /// Cheap bounds that decide nearly always.
     near: &'a Near<'a>,
     field: &'a Field,
+    /// A facet of the true mesh at the last place.
+    last: Cell<u32>,
     /// Concave edges that can be turned over, the shallowest first; ties in the order of the numbers.
     queue: BinaryHeap<Reverse<(u64, u32, u32)>>,
 }
@@ -51,7 +54,15 @@ enum Filling {
 /// mesh.
 pub(super) fn fill(surface: &mut Editable, mesh: &Mesh, touch: &Touch, tolerance: f64) {
     let (near, field) = (Near::new(mesh, tolerance), touch.field());
-    let mut run = Fill { surface, touch, tolerance, near: &near, field: &field, queue: BinaryHeap::new() };
+    let mut run = Fill {
+        surface,
+        touch,
+        tolerance,
+        near: &near,
+        field: &field,
+        last: Cell::new(0),
+        queue: BinaryHeap::new(),
+    };
     let facets: Vec<[u32; 3]> = run.surface.facets.iter().flatten().copied().collect();
     for corners in facets {
         run.offer_all(corners);
@@ -162,7 +173,9 @@ impl Fill<'_> {
         if self.near.has(p) && self.field.lower(&(p + n * radius)) > (1.0 + DEEPEST) * radius {
             return true;
         }
-        let gap = self.touch.gap(p, n);
+        let mut last = self.last.get();
+        let gap = self.touch.gap(p, n, &mut last);
+        self.last.set(last);
         gap <= self.tolerance
             && gap > DEEPEST * self.touch.radius
             && self.touch.height(p) < WIDEST * self.touch.radius

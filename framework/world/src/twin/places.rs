@@ -2,22 +2,24 @@
 
 use regrasp_api::{Mesh, Vec3};
 
-/// Calls `visit` with a facet and points and normals there at which a ball of a radius (m) may touch a
-/// surface, all over it and no farther apart than `spacing` (m).
-pub(super) fn places(mesh: &Mesh, radius: f64, spacing: f64, visit: &mut dyn FnMut(u32, &Vec3, &Vec3)) {
-    for facet in 0..mesh.facets().len() as u32 {
-        let n = mesh.normal(facet);
-        on_facet(mesh.corners(facet), spacing, |p| visit(facet, p, &n));
-        for (side, neighbor) in mesh.neighbors(facet).iter().enumerate() {
-            if neighbor.bend < 0.0 {
-                in_dent(mesh, (facet, side), radius, spacing, visit);
-            } else if neighbor.bend > 0.0 && neighbor.facet > facet {
-                let middle = (n + mesh.normal(neighbor.facet)).normalize();
-                along(mesh, (facet, side), spacing, |p| visit(facet, p, &middle));
-            }
+/// Calls `visit` with points and normals on a facet and its sides at which a ball of a radius (m) may touch a
+/// surface, no farther apart than `spacing` (m). With [`on_vertices`] they are all over it.
+pub(super) fn of_facet(
+    mesh: &Mesh,
+    facet: u32,
+    (radius, spacing): (f64, f64),
+    visit: &mut dyn FnMut(u32, &Vec3, &Vec3),
+) {
+    let n = mesh.normal(facet);
+    on_facet(mesh.corners(facet), spacing, |p| visit(facet, p, &n));
+    for (side, neighbor) in mesh.neighbors(facet).iter().enumerate() {
+        if neighbor.bend < 0.0 {
+            in_dent(mesh, (facet, side), radius, spacing, visit);
+        } else if neighbor.bend > 0.0 && neighbor.facet > facet {
+            let middle = (n + mesh.normal(neighbor.facet)).normalize();
+            along(mesh, (facet, side), spacing, |p| visit(facet, p, &middle));
         }
     }
-    on_vertices(mesh, visit);
 }
 
 /// Points all over a triangle: the middles of the triangles into which it falls.
@@ -70,7 +72,7 @@ fn in_dent(
 }
 
 /// The vertices with the mean normals there; not where a concave edge ends: there the ball touches elsewhere.
-fn on_vertices(mesh: &Mesh, visit: &mut dyn FnMut(u32, &Vec3, &Vec3)) {
+pub(super) fn on_vertices(mesh: &Mesh, visit: &mut dyn FnMut(u32, &Vec3, &Vec3)) {
     let mut around = vec![Some((0, Vec3::zeros())); mesh.vertices().len()];
     for facet in 0..mesh.facets().len() as u32 {
         let (corners, vertices) = (mesh.corners(facet), mesh.facets()[facet as usize]);

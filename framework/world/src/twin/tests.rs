@@ -36,7 +36,7 @@ fn a_noisy_ball_gets_a_convex_twin_that_a_fingertip_cannot_tell_from_it() {
         let [a, b, c] = twin.mesh.corners(facet);
         let (u, v) = (random.unit(), random.unit());
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
-        let gap = touch.gap(&(a + (b - a) * u + (c - a) * v), &twin.mesh.normal(facet));
+        let gap = touch.gap(&(a + (b - a) * u + (c - a) * v), &twin.mesh.normal(facet), &mut 0);
         assert!(gap.abs() <= twin.bound + 1e-5, "{gap} {}", twin.bound);
     }
 }

@@ -1,6 +1,6 @@
 //! What a fingertip's ball that touches a twin feels of the true mesh.
 
-use super::places::{on_facet, places};
+use super::places::{of_facet, on_facet, on_vertices};
 use crate::clearance::{Field, MeshSolid};
 use regrasp_api::{Mesh, Vec3};
 use std::sync::Arc;
@@ -33,10 +33,11 @@ impl Touch {
     }
 
     /// How far (m) the ball is from the mesh that touches a twin at `p` with the outward normal `n`; negative
-    /// where it enters the mesh.
-    pub fn gap(&self, p: &Vec3, n: &Vec3) -> f64 {
+    /// where it enters the mesh. `near` is a facet of the mesh that is likely to be close, and becomes the
+    /// closest.
+    pub fn gap(&self, p: &Vec3, n: &Vec3, near: &mut u32) -> f64 {
         let center = p + n * self.radius;
-        self.solid.signed_distance_within(&center, 1.05 * self.radius) - self.radius
+        self.solid.signed_distance_near(&center, 1.05 * self.radius, near) - self.radius
     }
 
     /// Bounds of the distance from the mesh wherever the centre of a ball that touches it can be.
@@ -64,59 +65,101 @@ impl Touch {
         let own = (!twin.is_locally_convex()).then(|| MeshSolid::new(twin));
         let area: f64 = (0..twin.facets().len() as u32).map(|facet| twin.area(facet)).sum();
         let spacing = (SPACING * self.radius).max((area / MOST_PLACES).sqrt());
-        let deepest = vec![0.0; twin.facets().len()];
-        let mut range = Range { touch: self, own, most, above: 0.0, below: 0.0, deepest };
-        places(twin, self.radius, spacing, &mut |facet, p, n| range.visit(facet, p, n));
-        for facet in range.close() {
-            let n = twin.normal(facet);
-            on_facet(twin.corners(facet), spacing / CLOSER, |p| range.visit(facet, p, &n));
+        let mut range = Range::new(self, own.as_ref(), most);
+        let facets: Vec<u32> = (0..twin.facets().len() as u32).collect();
+        let mut deepest = range.visit_all(&facets, |range, facet| {
+            let mut deepest: f64 = 0.0;
+            of_facet(twin, facet, (self.radius, spacing), &mut |_, p, n| {
+                deepest = deepest.max(range.visit(p, n, spacing));
+            });
+            deepest
+        });
+        on_vertices(twin, &mut |facet, p, n| {
+            let deep = &mut deepest[facet as usize];
+            *deep = deep.max(range.visit(p, n, spacing));
+        });
+        if range.own.is_some() {
+            // In a dent more may be found than was.
+            let least = range.above.max(range.below) - CLOSE;
+            let close: Vec<u32> =
+                facets.into_iter().filter(|&facet| deepest[facet as usize] > least).collect();
+            range.visit_all(&close, |range, facet| {
+                let n = twin.normal(facet);
+                let mut deepest: f64 = 0.0;
+                on_facet(twin.corners(facet), spacing / CLOSER, |p| {
+                    deepest = deepest.max(range.visit(p, &n, 0.0))
+                });
+                deepest
+            });
         }
         range.is_within().then_some((range.above, range.below))
     }
 }
 
 /// What a ball feels at the places looked at so far.
+#[derive(Clone)]
 struct Range<'t> {
     touch: &'t Touch,
     /// The twin itself, where a ball on it may enter it elsewhere.
-    own: Option<MeshSolid>,
+    own: Option<&'t MeshSolid>,
     /// No more is looked at beyond this (m).
     most: f64,
     above: f64,
     below: f64,
-    /// The largest gap or depth on each facet (m), whether the ball can be there or not.
-    deepest: Vec<f64>,
+    /// Facets of mesh and twin at the last place.
+    near: (u32, u32),
 }
 
-impl Range<'_> {
+impl<'t> Range<'t> {
+    fn new(touch: &'t Touch, own: Option<&'t MeshSolid>, most: f64) -> Self {
+        Self { touch, own, most, above: 0.0, below: 0.0, near: (0, 0) }
+    }
+
     fn is_within(&self) -> bool {
         f64::max(self.above, self.below) <= self.most
     }
 
-    fn visit(&mut self, facet: u32, p: &Vec3, n: &Vec3) {
+    /// Visits facets, by two threads; what is returned of each. The largest of all is the same in any order.
+    fn visit_all(&mut self, facets: &[u32], visit: impl Fn(&mut Self, u32) -> f64 + Sync) -> Vec<f64> {
+        let (some, others) = facets.split_at(facets.len() / 2);
+        let visit_part = |range: &mut Self, part: &[u32]| -> Vec<f64> {
+            part.iter().map(|&facet| visit(range, facet)).collect()
+        };
+        let mut other = self.clone();
+        let (mut found, more) = std::thread::scope(|scope| {
+            let there = scope.spawn(|| visit_part(&mut other, others));
+            let here = visit_part(self, some);
+            (here, there.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+        });
+        found.extend(more);
+        (self.above, self.below) = (self.above.max(other.above), self.below.max(other.below));
+        found
+    }
+
+    /// Looks at a place; how large gap or depth are there (m), or 0 where no place within `cell` (m) can tell
+    /// more than is known.
+    fn visit(&mut self, p: &Vec3, n: &Vec3, cell: f64) -> f64 {
         if !self.is_within() {
-            return;
+            return 0.0;
         }
-        let gap = self.touch.gap(p, n);
-        let deep = &mut self.deepest[facet as usize];
-        *deep = deep.max(gap.abs());
-        if (gap > self.above || -gap > self.below) && self.is_free(p, n) {
+        let gap = self.touch.gap(p, n, &mut self.near.0);
+        let is_more = gap > self.above || -gap > self.below;
+        if !is_more && gap.abs() <= self.above.max(self.below) - CLOSE {
+            return 0.0;
+        }
+        let room = self.room(p, n);
+        if room >= -SINK {
             self.above = self.above.max(gap);
             self.below = self.below.max(-gap);
         }
+        // Where the ball moves by as much as the cell, its room grows by no more.
+        if room < -SINK - cell { 0.0 } else { gap.abs() }
     }
 
-    /// Whether the ball enters the twin nowhere.
-    fn is_free(&self, p: &Vec3, n: &Vec3) -> bool {
-        let Some(own) = &self.own else { return true };
+    /// How far (m) the ball is from the twin elsewhere, negative where it enters it.
+    fn room(&mut self, p: &Vec3, n: &Vec3) -> f64 {
+        let Some(own) = self.own else { return f64::INFINITY };
         let radius = self.touch.radius;
-        own.signed_distance_within(&(p + n * radius), 1.01 * radius) >= radius - SINK
-    }
-
-    /// The facets of a twin with dents on which more may be found than was.
-    fn close(&self) -> Vec<u32> {
-        let least = self.above.max(self.below) - CLOSE;
-        let facets = 0..if self.own.is_some() { self.deepest.len() as u32 } else { 0 };
-        facets.filter(|&facet| self.deepest[facet as usize] > least).collect()
+        own.signed_distance_near(&(p + n * radius), 1.01 * radius, &mut self.near.1) - radius
     }
 }
