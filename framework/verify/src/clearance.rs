@@ -8,16 +8,16 @@
 //! "Impulse-based dynamic simulation of rigid body systems", PhD thesis, Berkeley 1996; Schwarzer, Saha,
 //! Latombe, "Exact collision checking of robot paths", WAFR 2002).
 
+use crate::bounds::{Bounds, Samples};
 use crate::hand::Chains;
-use crate::motion::Motions;
 use crate::scene::Scene;
 use crate::shape::{self, Core};
-use crate::solid::{Gap, Solid};
+use crate::solid::{ANYWHERE, Gap};
 use crate::touch::Touch;
 use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
 use nalgebra::Point3;
-use regrasp_api::{Body, BodyPair, MAX_FINGERS, Vec3};
+use regrasp_api::{Body, BodyPair, MAX_FINGERS};
 use regrasp_plan::{Extreme, HoldsAt, Place};
 
 /// How often a step between samples is halved before the clearance there counts as not certified: what
@@ -36,42 +36,18 @@ pub(crate) struct ClearanceCheck<'s> {
     gauge: Gauge,
     demanded: f64,
     smallest: f64,
-    /// How far the bodies move over the step.
-    motions: Motions,
+    bounds: Bounds<'s>,
     /// For each pair a lower bound of its distance at the last state (m); minus infinity where nothing is
     /// known.
     lower: Vec<f64>,
     /// For each pair of object and segment where they were closest at their last exact distance, in O.
     nearest: Vec<Gap>,
-    /// For each pair of object and segment what the two planes between them were put up by.
-    supports: Vec<[Supported; 2]>,
     /// Room for lower bounds of all pairs, by which they are asked in turn.
-    bounds: Vec<(f64, usize)>,
+    turns: Vec<(f64, usize)>,
     /// Room for halved steps.
     spare: Frames,
     /// How many more halvings there may be: a plan that needs as many is no plan of ours.
     halvings_left: usize,
-}
-
-/// How far the object reaches in a direction, remembered: the next one asked about is hardly another.
-#[derive(Clone, Copy, Default)]
-struct Supported {
-    n_O: Vec3,
-    support: f64,
-}
-
-impl Supported {
-    /// The largest of `n_O · v` over the solid's vertices (m), which are at most `reach` from the origin, or
-    /// an upper bound of it that is no more than `enough`.
-    fn support(&mut self, solid: &Solid, n_O: &Vec3, reach: f64, enough: f64) -> f64 {
-        // Turned by so much, no vertex rises by more than that times its distance.
-        let loose = self.support + reach * (n_O - self.n_O).norm();
-        if loose <= enough {
-            return loose;
-        }
-        *self = Self { n_O: *n_O, support: solid.support(n_O) };
-        self.support
-    }
 }
 
 /// A pair on one step of the plan.
@@ -92,11 +68,10 @@ impl<'s> ClearanceCheck<'s> {
             gauge: Gauge::new("clearance", "m", Side::Above, demanded),
             demanded,
             smallest,
-            motions: Motions::new(scene),
+            bounds: Bounds::new(scene),
             lower: vec![f64::NEG_INFINITY; scene.pairs.len()],
-            nearest: vec![Gap::somewhere(0); scene.pairs.len()],
-            supports: vec![Default::default(); scene.pairs.len()],
-            bounds: Vec::new(),
+            nearest: vec![Gap::somewhere(ANYWHERE); scene.pairs.len()],
+            turns: Vec::new(),
             spare: Frames::new(hand),
             halvings_left: MOST_HALVINGS,
         }
@@ -105,7 +80,7 @@ impl<'s> ClearanceCheck<'s> {
     /// The smallest distance of a pair at a state (m), or the one known where none is smaller there.
     pub(crate) fn glance(&mut self, leg: &Leg<'_>, frames: &Frames) -> f64 {
         for pair in 0..self.scene.pairs.len() {
-            if self.compared(leg, pair) && self.balls(pair, frames) < self.smallest {
+            if self.compared(leg, pair) && self.bounds.balls(pair, frames) < self.smallest {
                 self.smallest = self.smallest.min(self.exact(pair, frames, true));
             }
         }
@@ -117,7 +92,7 @@ impl<'s> ClearanceCheck<'s> {
         for pair in 0..self.scene.pairs.len() {
             self.lower[pair] = f64::INFINITY;
             if self.compared(leg, pair) {
-                let mut distance = self.balls(pair, frames);
+                let mut distance = self.bounds.balls(pair, frames);
                 if distance <= self.smallest.max(self.demanded) {
                     distance = self.exact(pair, frames, true);
                     self.take(pair, distance, || leg.at(state));
@@ -148,53 +123,76 @@ impl<'s> ClearanceCheck<'s> {
         frames: &[Frames],
         touches: &[[Option<Touch>; MAX_FINGERS]],
     ) {
-        self.motions.step(self.scene, leg, state);
+        self.bounds.motions.step(self.scene, leg, state);
         for pair in 0..self.scene.pairs.len() {
-            let motion = self.motions.of_pair(self.scene.pairs[pair]) * SAMPLES as f64;
+            let motion = self.bounds.motions.of_pair(self.scene.pairs[pair]) * SAMPLES as f64;
             let floor = self.smallest.max(self.demanded);
             if motion == 0.0 || self.lower[pair] - motion > floor {
                 self.lower[pair] -= motion;
                 continue;
             }
-            let step = Step { leg, state, pair };
-            for (sample, touches) in touches.iter().enumerate().skip(1) {
-                self.sample(step, sample, frames, touches);
-            }
+            let seen = Samples { frames, touches };
+            self.lower[pair] = self.span(Step { leg, state, pair }, (0, self.lower[pair]), SAMPLES, seen);
         }
     }
 
-    /// Carries a pair's bound from the sample before to `sample`, with a new distance where the bound is used
-    /// up.
+    /// Carries a pair's bound from one sample to another. In between no distance is below half of what both
+    /// bounds leave of the motion (see the head of this file): where that is enough, nothing there is looked
+    /// at; else the half-way sample is.
+    fn span(
+        &mut self,
+        step: Step<'_, '_>,
+        (from, before): (usize, f64),
+        to: usize,
+        seen: Samples<'_>,
+    ) -> f64 {
+        let bodies = self.scene.pairs[step.pair];
+        let motion = self.bounds.motions.of_pair_between(self.scene, bodies, (from, to), seen.frames);
+        let floor = self.smallest.max(self.demanded);
+        if before - motion > floor {
+            return before - motion;
+        }
+        let during = self.bound_during(step.pair, (from, to), seen, floor);
+        if during > floor {
+            return during;
+        }
+        let after = self.bound(step.pair, to, seen, floor);
+        if after > floor && (before + after - motion) / 2.0 > floor {
+            return after;
+        }
+        if to == from + 1 {
+            return self.sample(step, before, (to, after), motion, seen.frames);
+        }
+        let middle = (from + to) / 2;
+        let half_way = self.span(step, (from, before), middle, seen);
+        self.span(step, (middle, half_way), to, seen)
+    }
+
+    /// Carries a pair's bound from the sample before to `sample`, with a new distance where the bound there is
+    /// not enough.
     fn sample(
         &mut self,
         step: Step<'_, '_>,
-        sample: usize,
+        before: f64,
+        (sample, mut after): (usize, f64),
+        motion: f64,
         frames: &[Frames],
-        touches: &[Option<Touch>; MAX_FINGERS],
-    ) {
+    ) -> f64 {
         let pair = step.pair;
-        let motion = self.motions.of_pair_seen(self.scene, self.scene.pairs[pair], sample, frames);
-        let floor = self.smallest.max(self.demanded);
-        let before = self.lower[pair];
-        if before - motion > floor {
-            self.lower[pair] = before - motion;
-            return;
-        }
         let place = |fraction: f64| step.leg.between(step.state, fraction);
         let end = sample as f64 / SAMPLES as f64;
-        let mut after = self.bound(pair, &frames[sample], touches, floor);
-        if after <= floor {
+        if after <= self.smallest.max(self.demanded) {
             after = self.exact(pair, &frames[sample], false);
             self.take(pair, after, || place(end));
         }
-        self.lower[pair] = after;
         let target = self.target();
         if before.min(after) > target && (before + after - motion) / 2.0 <= target {
             let before = self.exact(pair, &frames[sample - 1], false);
-            let after = self.exact(pair, &frames[sample], false);
+            let exact = self.exact(pair, &frames[sample], false);
             let start = (sample - 1) as f64 / SAMPLES as f64;
-            self.certify(step, (start, before), (end, after), (motion, 0));
+            self.certify(step, (start, before), (end, exact), (motion, 0));
         }
+        after
     }
 
     /// Makes sure that the pair stays apart between two instants of a step, given as fraction and exact
@@ -258,18 +256,22 @@ impl<'s> ClearanceCheck<'s> {
                 Body::Link(finger, _) | Body::Fingertip(finger) => touches[finger.index()],
                 _ => None,
             };
-            *gap = Gap::somewhere(touch.filter(|_| !self.scene.has_twin()).map_or(0, |touch| touch.facet));
+            *gap = Gap::somewhere(
+                touch.filter(|_| !self.scene.has_twin()).map_or(ANYWHERE, |touch| touch.facet),
+            );
         }
-        let mut bounds = std::mem::take(&mut self.bounds);
-        bounds.clear();
+        let mut turns = std::mem::take(&mut self.turns);
+        turns.clear();
         let pairs = 0..self.scene.pairs.len();
-        bounds.extend(
-            pairs.filter(|&pair| self.compared(leg, pair)).map(|pair| (self.balls(pair, frames), pair)),
+        turns.extend(
+            pairs
+                .filter(|&pair| self.compared(leg, pair))
+                .map(|pair| (self.bounds.balls(pair, frames), pair)),
         );
         // The likeliest first: one exact distance then spares most of the others.
-        bounds.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        turns.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut closest: Option<(f64, usize)> = None;
-        for &(bound, pair) in &bounds {
+        for &(bound, pair) in &turns {
             let least = closest.map_or(f64::INFINITY, |(distance, _)| distance);
             if bound >= least {
                 break;
@@ -278,7 +280,7 @@ impl<'s> ClearanceCheck<'s> {
                 closest = Some((distance, pair));
             }
         }
-        self.bounds = bounds;
+        self.turns = turns;
         closest.map(|(distance, pair)| {
             let (a, b) = self.scene.pairs[pair];
             (distance, (self.scene.bodies[a].body, self.scene.bodies[b].body))
@@ -314,55 +316,40 @@ impl<'s> ClearanceCheck<'s> {
         Some(cores - first.radius - second.radius)
     }
 
-    /// A lower bound of a pair's distance (m) from balls around both, or the box that one of them is.
-    fn balls(&self, pair: usize, frames: &Frames) -> f64 {
+    /// A lower bound of a pair's distance at a sample (m) that is cheap: from balls or boxes around both, or a
+    /// plane between object and segment; between rods and balls the distance itself. Stops at the first above
+    /// `floor`.
+    fn bound(&mut self, pair: usize, sample: usize, seen: Samples<'_>, floor: f64) -> f64 {
+        let frames = &seen.frames[sample];
+        let balls = self.bounds.balls(pair, frames);
+        if balls > floor {
+            return balls;
+        }
         let (a, b) = self.scene.pairs[pair];
         let (first, second) = (&self.scene.bodies[a], &self.scene.bodies[b]);
-        let (X_HA, X_HB) = (self.scene.pose(a, frames), self.scene.pose(b, frames));
-        match (first.ball, second.ball) {
-            (Some((p, r)), Some((q, s))) => {
-                let [p, q] = [(X_HA, p), (X_HB, q)].map(|(X, p)| (X * Point3::from(p)).coords);
-                let balls = (p - q).norm() - r - s;
-                balls.max(first.core.box_to(X_HA, &q) - s).max(second.core.box_to(X_HB, &p) - r)
+        match (&first.core, &second.core) {
+            (Core::Mesh(_), Core::Segment(..)) if first.body == Body::Object => {
+                balls.max(self.bounds.planes((pair, &self.nearest[pair]), (sample, sample), seen, floor))
             }
-            _ => f64::NEG_INFINITY,
+            (Core::Point(_) | Core::Segment(..), Core::Point(_) | Core::Segment(..)) => {
+                self.exact(pair, frames, false)
+            }
+            _ => balls.max(self.bounds.boxes(pair, (sample, sample), seen)),
         }
     }
 
-    /// A cheap lower bound of a pair's distance (m): balls around both, or a plane between object and
-    /// segment. Stops at the first above `floor`.
-    fn bound(
-        &mut self,
-        pair: usize,
-        frames: &Frames,
-        touches: &[Option<Touch>; MAX_FINGERS],
-        floor: f64,
-    ) -> f64 {
+    /// A lower bound of a pair's distance at two samples and all the time between (m), where one of them is a
+    /// rod or a ball and the other one does not move, or is the object: by what does not bend between samples,
+    /// and how far the rod may be from its straight way.
+    fn bound_during(&mut self, pair: usize, span: (usize, usize), seen: Samples<'_>, floor: f64) -> f64 {
         let (a, b) = self.scene.pairs[pair];
         let (first, second) = (&self.scene.bodies[a], &self.scene.bodies[b]);
-        let (X_HA, X_HB) = (self.scene.pose(a, frames), self.scene.pose(b, frames));
-        let mut bound = self.balls(pair, frames);
-        if let (Body::Object, Core::Mesh(solid), Core::Segment(p, q)) =
-            (first.body, &first.core, &second.core)
-        {
-            let X_AB = X_HA.inv_mul(X_HB);
-            let ends = [p, q].map(|end| (X_AB * Point3::from(*end)).coords);
-            let touch = match second.body {
-                Body::Link(finger, _) => touches[finger.index()].map(|touch| touch.n_O),
-                _ => None,
-            };
-            for (k, n) in [touch, Some(self.nearest[pair].direction)].into_iter().enumerate() {
-                let Some(n) = n else { continue };
-                let above = ends[0].dot(&n).min(ends[1].dot(&n)) - second.radius;
-                let support =
-                    self.supports[pair][k].support(solid, &n, self.scene.object_reach, above - floor);
-                bound = bound.max(above - support);
-                if bound > floor {
-                    break;
-                }
+        match (&first.core, &second.core) {
+            (Core::Mesh(_), Core::Segment(..)) if first.body == Body::Object => {
+                self.bounds.planes((pair, &self.nearest[pair]), span, seen, floor)
             }
+            _ => self.bounds.boxes(pair, span, seen),
         }
-        bound
     }
 
     /// A lower bound of all distances at all times, for the certificate: at samples none is smaller than the

@@ -4,6 +4,7 @@
 use crate::hand::Chains;
 use crate::scene::Scene;
 use crate::slip::{Event, Hold, SlipCheck};
+use crate::solid::ANYWHERE;
 use crate::surface::SurfaceCheck;
 use crate::touch::Touch;
 use crate::track::{Frames, Leg, SAMPLES};
@@ -61,7 +62,7 @@ impl<'s> ContactChecks<'s> {
             closure: Gauge::new("closure", "m", Side::AtMost, tolerances.closure),
             normals: Gauge::new("normals", "rad", Side::AtMost, tolerances.normal),
             events: Vec::new(),
-            facets: [0; MAX_FINGERS],
+            facets: [ANYWHERE; MAX_FINGERS],
         }
     }
 

@@ -52,7 +52,8 @@ impl ControllerCheck {
             let f = i as f64 / PLACES as f64;
             for (finger, bound) in bounds.iter().enumerate().take(hand.fingers.len()) {
                 // What cannot be the worst is not placed.
-                if *bound > gauge.worst().unwrap_or(0.0) {
+                let worst = gauge.worst().unwrap_or(0.0);
+                if *bound > worst && (bound.is_infinite() || step.bound(hand, scene, finger, f) > worst) {
                     let distance = step.strays(hand, &mut self.frames, finger, f);
                     gauge.note(distance, || Place { finger: Some(finger), ..leg.between(state, f) });
                 }
@@ -117,6 +118,19 @@ impl<'s> Step<'s> {
             *bound = (0..chain.joints.len()).map(|j| times(levers[j], across(chain.first + j))).sum::<f64>();
         }
         bounds
+    }
+
+    /// How far a tip can be from the line at a fraction of the time (m), where the progress stays within the
+    /// step.
+    fn bound(&self, hand: &Chains, scene: &Scene, finger: usize, f: f64) -> f64 {
+        let (levers, g) = (scene.tip_levers(FingerIndex(finger as u8)), 1.0 - f);
+        let chain = &hand.fingers[finger];
+        let across = |j: usize| {
+            let e = |end: usize| self.slopes[end][j] - self.along[end] * self.change[j];
+            (f * g * g * e(0) - f * f * g * e(1)).abs()
+        };
+        let bound: f64 = (0..chain.joints.len()).map(|j| times(levers[j], across(chain.first + j))).sum();
+        bound * (1.0 + 1e-9)
     }
 
     /// How far a tip is from the line at a fraction of the time (m).

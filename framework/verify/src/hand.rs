@@ -42,6 +42,9 @@ pub(crate) struct Driven {
 pub(crate) struct Joint {
     pub(crate) kind: JointKind,
     X_PJ: Pose,
+    /// Whether X_PJ turns, and whether it shifts at all: most joints do one alone.
+    does_turn: bool,
+    does_shift: bool,
     pub(crate) axis: Unit<Vec3>,
     pub(crate) lower: f64,
     pub(crate) upper: f64,
@@ -92,7 +95,8 @@ impl Chain {
             return Err("`tip` is not finite".into());
         }
         let mut joints = finger.joint.iter().map(Joint::new).collect::<Result<Vec<_>, _>>()?;
-        joints[0].X_PJ = X_HBase * joints[0].X_PJ;
+        let X_HJ = X_HBase * joints[0].X_PJ;
+        joints[0].set_origin(X_HJ);
         let driven = driven(finger)?;
         Ok(Self { joints, p_LTip, first, driven })
     }
@@ -106,7 +110,12 @@ impl Chain {
     pub(crate) fn frames(&self, joints: &[f64], frames: &mut [Pose]) {
         let mut X_HP = Pose::identity();
         for ((joint, &q), frame) in self.joints.iter().zip(joints).zip(frames) {
-            X_HP *= joint.X_PJ;
+            if joint.does_shift {
+                X_HP.translation.vector += X_HP.rotation * joint.X_PJ.translation.vector;
+            }
+            if joint.does_turn {
+                X_HP.rotation *= joint.X_PJ.rotation;
+            }
             match joint.kind {
                 JointKind::Revolute => X_HP.rotation *= Rotation::from_axis_angle(&joint.axis, q),
                 JointKind::Prismatic => X_HP *= Translation3::from(joint.axis.into_inner() * q),
@@ -169,7 +178,27 @@ impl Joint {
         let (lower, upper) = (joint.lower, joint.upper);
         let axis = Unit::new_normalize(axis);
         let effort = joint.effort;
-        Ok(Self { kind: joint.kind, X_PJ, axis, lower, upper, velocity, acceleration, effort })
+        let (does_turn, does_shift) = (true, true);
+        let mut made = Self {
+            kind: joint.kind,
+            X_PJ,
+            does_turn,
+            does_shift,
+            axis,
+            lower,
+            upper,
+            velocity,
+            acceleration,
+            effort,
+        };
+        made.set_origin(X_PJ);
+        Ok(made)
+    }
+
+    fn set_origin(&mut self, X_PJ: Pose) {
+        self.X_PJ = X_PJ;
+        self.does_turn = X_PJ.rotation != Rotation::identity();
+        self.does_shift = X_PJ.translation.vector != Vec3::zeros();
     }
 }
 

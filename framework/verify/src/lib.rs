@@ -7,6 +7,7 @@
 //! [`GraspVerifier`] judges grasps by themselves, in which nothing moves.
 
 mod border;
+mod bounds;
 mod claims;
 mod clearance;
 mod contact_checks;
@@ -28,6 +29,7 @@ mod slip;
 mod solid;
 mod stability;
 mod stretch;
+mod supported;
 mod surface;
 mod touch;
 mod track;

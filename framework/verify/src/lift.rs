@@ -4,6 +4,7 @@
 use crate::clearance::ClearanceCheck;
 use crate::hand::Chains;
 use crate::scene::Scene;
+use crate::solid::ANYWHERE;
 use crate::touch::Touch;
 use crate::track::{Frames, Leg, SAMPLES};
 use crate::verdict::{Check, Gauge, Side};
@@ -50,7 +51,7 @@ impl<'s> LiftCheck<'s> {
             rise: Gauge::new("lift", "m", Side::AtMost, 1e-6),
             touch: Gauge::new("touch-travel", "m", Side::AtMost, tolerances.slip),
             row: Vec::new(),
-            facet: 0,
+            facet: ANYWHERE,
             spare: Frames::new(hand),
         }
     }
@@ -69,7 +70,7 @@ impl<'s> LiftCheck<'s> {
         if !self.scene.has_twin() {
             return touch.gap;
         }
-        touch.gap.min(Touch::of_object(self.scene, p_OTip, self.hand.tip_radius, 0).gap)
+        touch.gap.min(Touch::of_object(self.scene, p_OTip, self.hand.tip_radius, ANYWHERE).gap)
     }
 
     /// Judges the whole regrasp; says whether the finger was lifted.
@@ -96,8 +97,16 @@ impl<'s> LiftCheck<'s> {
         for instant in &row[from..=to.max(from)] {
             clearance.take_tip(finger, instant.free, || leg.between(instant.state, instant.fraction));
         }
+        let tip = Body::Fingertip(regrasp_api::FingerIndex(finger as u8));
+        let body = self.scene.bodies.iter().find(|solidity| solidity.body == tip);
+        let (mut motion, mut of) = (0.0, None);
         for pair in row[from..=to.max(from)].windows(2) {
-            self.certify(leg, finger, (&pair[0], &pair[1]), 0, clearance);
+            if of != Some(pair[0].state) {
+                of = Some(pair[0].state);
+                let steps: Vec<f64> = leg.joint_steps(pair[0].state).collect();
+                motion = body.map_or(0.0, |body| body.motion(&steps).0);
+            }
+            self.certify((leg, finger, motion), (&pair[0], &pair[1]), 0, clearance);
         }
         self.row = row;
         highest >= self.lift
@@ -120,26 +129,19 @@ impl<'s> LiftCheck<'s> {
         }
     }
 
-    /// Makes sure that the lifted tip stays clear between two instants.
+    /// Makes sure that the lifted tip stays clear between two instants of a step, in all of which it moves so
+    /// far at most (m).
     fn certify(
         &mut self,
-        leg: &Leg<'_>,
-        finger: usize,
+        (leg, finger, motion): (&Leg<'_>, usize, f64),
         (a, b): (&Instant, &Instant),
         depth: u32,
         clearance: &mut ClearanceCheck<'_>,
     ) {
         let state = a.state;
         let (start, end) = (a.fraction, if b.state == state { b.fraction } else { 1.0 });
-        let tip = Body::Fingertip(regrasp_api::FingerIndex(finger as u8));
-        let body = self.scene.bodies.iter().position(|solidity| solidity.body == tip);
-        let motion = body.map_or(0.0, |body| {
-            let steps: Vec<f64> = leg.joint_steps(state).collect();
-            self.scene.bodies[body].motion(&steps).0
-        });
-        let motion = motion * (end - start);
         let target = clearance.target();
-        let bound = (a.free + b.free - motion) / 2.0;
+        let bound = (a.free + b.free - motion * (end - start)) / 2.0;
         if bound > target || a.free.min(b.free) <= target {
             return; // Clear, or known not to be.
         }
@@ -155,8 +157,8 @@ impl<'s> LiftCheck<'s> {
         clearance.take_tip(finger, free, || leg.between(state, fraction));
         let middle = Instant { state, fraction, height: touch.gap, free, p_OTip };
         let end = Instant { state, fraction: end, ..*b };
-        self.certify(leg, finger, (a, &middle), depth + 1, clearance);
-        self.certify(leg, finger, (&middle, &end), depth + 1, clearance);
+        self.certify((leg, finger, motion), (a, &middle), depth + 1, clearance);
+        self.certify((leg, finger, motion), (&middle, &end), depth + 1, clearance);
     }
 
     /// Takes in what was gathered later in the plan.

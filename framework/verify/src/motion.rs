@@ -1,7 +1,6 @@
 //! How far bodies move at most over a step: in the hand's frame, and as seen from the object.
 
 use crate::scene::Scene;
-use crate::shape::Core;
 use crate::track::{Frames, Leg, SAMPLES};
 use nalgebra::Point3;
 use regrasp_api::{Body, Vec3, angle_between};
@@ -15,8 +14,8 @@ pub(crate) struct Motions {
     in_hand: Vec<f64>,
     /// How far the joints before a body turn in sum from sample to sample (rad).
     turning: Vec<f64>,
-    /// The same as seen from the object, where it was asked for in this step.
-    from_object: Vec<Option<[f64; SAMPLES]>>,
+    /// The ends of each body's core in O at each sample, where they were asked for in this step (m).
+    ends_O: Vec<[Option<[Vec3; 2]>; SAMPLES + 1]>,
     /// How far each joint moves from sample to sample (rad; m).
     steps: Vec<f64>,
     /// How far the object turns (rad) and shifts (m) from sample to sample.
@@ -28,8 +27,8 @@ impl Motions {
     pub(crate) fn new(scene: &Scene) -> Self {
         let count = scene.bodies.len();
         let nothing = vec![0.0; count];
-        let (turning, from_object) = (nothing.clone(), vec![None; count]);
-        Self { in_hand: nothing, turning, from_object, steps: Vec::new(), turn: 0.0, shift: 0.0 }
+        let (turning, ends_O) = (nothing.clone(), vec![[None; SAMPLES + 1]; count]);
+        Self { in_hand: nothing, turning, ends_O, steps: Vec::new(), turn: 0.0, shift: 0.0 }
     }
 
     /// Begins the step after a state.
@@ -46,7 +45,7 @@ impl Motions {
                 _ => this.motion(&self.steps),
             };
         }
-        self.from_object.fill(None);
+        self.ends_O.fill([None; SAMPLES + 1]);
     }
 
     /// How far two bodies move in sum from one sample to the next (m), at an even speed or below it.
@@ -54,59 +53,86 @@ impl Motions {
         self.in_hand[a] + self.in_hand[b]
     }
 
-    /// The same for the samples before `sample` and this one, or less, as seen from the object.
-    pub(crate) fn of_pair_seen(
+    /// The same from one sample to another of the step, or less, as seen from the object.
+    pub(crate) fn of_pair_between(
         &mut self,
         scene: &Scene,
         (a, b): (usize, usize),
-        sample: usize,
+        (from, to): (usize, usize),
         frames: &[Frames],
     ) -> f64 {
-        let in_hand = self.of_pair((a, b));
+        let in_hand = self.of_pair((a, b)) * (to - from) as f64;
         if self.turn == 0.0 && self.shift == 0.0 {
             return in_hand;
         }
-        let seen = self.seen(scene, a, frames)[sample - 1] + self.seen(scene, b, frames)[sample - 1];
-        in_hand.min(seen)
+        let seen = |motions: &mut Self, body: usize| motions.seen(scene, body, (from, to), frames);
+        in_hand.min(seen(self, a) + seen(self, b))
     }
 
-    /// How far any point of a body moves at most as seen from the object, from each sample to the next (m);
+    /// How far any point of a body moves at most as seen from the object, from one sample to another (m);
     /// infinite for what is no point, segment or the object itself.
-    fn seen(&mut self, scene: &Scene, body: usize, frames: &[Frames]) -> &[f64; SAMPLES] {
-        if self.from_object[body].is_none() {
-            self.from_object[body] = Some(self.look(scene, body, frames));
+    ///
+    /// A point's path r in O is no chord: its length is at most the chord's plus half of the largest |r''|
+    /// (times the duration squared). Points between the ends of a segment move no farther than these.
+    fn seen(&mut self, scene: &Scene, body: usize, (from, to): (usize, usize), frames: &[Frames]) -> f64 {
+        if scene.bodies[body].body == Body::Object {
+            return 0.0;
         }
-        self.from_object[body].as_ref().expect("it was just looked at")
+        let (Some(before), Some(after)) =
+            (self.ends(scene, body, from, frames), self.ends(scene, body, to, frames))
+        else {
+            return f64::INFINITY;
+        };
+        let duration = (to - from) as f64;
+        let chord = (after[0] - before[0]).norm().max((after[1] - before[1]).norm());
+        chord + self.bend_seen(body, &before, duration) * duration * duration / 2.0
     }
 
-    /// A point's path r in O is no chord: its length is at most the chord's plus half of the largest |r''|
-    /// (time in samples). With r = Rᵀ (p - x), the object turning at an even ω and shifting at an even x',
-    /// |r''| ≤ |p''| + 2 ω |p' - x'| + ω² |p - x|. And of a chain whose joints move at even rates and turn by
-    /// w in sum, |p''| ≤ 3 w |p'|: axes and arms each turn with what is before them. Points between the ends
-    /// of a segment move no farther than these.
-    fn look(&self, scene: &Scene, body: usize, frames: &[Frames]) -> [f64; SAMPLES] {
-        let ends = match &scene.bodies[body].core {
-            _ if scene.bodies[body].body == Body::Object => return [0.0; SAMPLES],
-            Core::Point(p) => [*p, *p],
-            Core::Segment(p, q) => [*p, *q],
-            _ => return [f64::INFINITY; SAMPLES],
+    /// The largest |r''| of the ends of a body as seen from the object, which are at `before` at first (time
+    /// in samples).
+    ///
+    /// With r = Rᵀ (p - x), the object turning at an even ω and shifting at an even x', |r''| ≤ |p''| + 2 ω |p'
+    /// - x'| + ω² |p - x|.
+    fn bend_seen(&self, body: usize, before: &[Vec3; 2], duration: f64) -> f64 {
+        let relative = self.in_hand[body] + self.shift;
+        let far = before[0].norm().max(before[1].norm()) + relative * duration;
+        self.bend(body) + 2.0 * self.turn * relative + self.turn * self.turn * far
+    }
+
+    /// The same in H: of a chain whose joints move at even rates and turn by w in sum, |p''| ≤ 3 w |p'|, as
+    /// axes and arms each turn with what is before them.
+    fn bend(&self, body: usize) -> f64 {
+        3.0 * self.turning[body] * self.in_hand[body]
+    }
+
+    /// How far points of a link are at most from the straight way between two samples (m): an eighth of the
+    /// largest second derivative, times the duration squared. In H ...
+    pub(crate) fn play(&self, body: usize, duration: usize) -> f64 {
+        self.bend(body) * (duration * duration) as f64 / 8.0
+    }
+
+    /// ... and as seen from the object, from `before` on.
+    pub(crate) fn play_seen(&self, body: usize, before: &[Vec3; 2], duration: usize) -> f64 {
+        self.bend_seen(body, before, duration as f64) * (duration * duration) as f64 / 8.0
+    }
+
+    /// The ends of a body's core in O at a sample (m).
+    pub(crate) fn ends(
+        &mut self,
+        scene: &Scene,
+        body: usize,
+        sample: usize,
+        frames: &[Frames],
+    ) -> Option<[Vec3; 2]> {
+        let [p, q] = scene.bodies[body].core.ends()?;
+        let place = || {
+            let frames = &frames[sample];
+            let X_HB = scene.pose(body, frames);
+            let in_O = |end: &Vec3| frames.X_HO.inverse_transform_point(&(X_HB * Point3::from(*end))).coords;
+            let first = in_O(&p);
+            [first, if p == q { first } else { in_O(&q) }]
         };
-        let (speed, turn) = (self.in_hand[body], self.turn);
-        let relative = speed + self.shift;
-        let at = |sample: usize| {
-            let X_OB = frames[sample].X_HO.inv_mul(scene.pose(body, &frames[sample]));
-            ends.map(|end| (X_OB * Point3::from(end)).coords)
-        };
-        let mut before = at(0);
-        std::array::from_fn(|k| {
-            let after = at(k + 1);
-            let longest = |f: &dyn Fn(usize) -> Vec3| f(0).norm().max(f(1).norm());
-            let chord = longest(&|end| after[end] - before[end]);
-            let far = longest(&|end| before[end]) + relative;
-            let bend = 3.0 * self.turning[body] * speed + 2.0 * turn * relative + turn * turn * far;
-            before = after;
-            chord + bend / 2.0
-        })
+        Some(*self.ends_O[body][sample].get_or_insert_with(place))
     }
 }
 
@@ -114,6 +140,7 @@ impl Motions {
 mod tests {
     use super::*;
     use crate::hand::Chains;
+    use crate::shape::Core;
     use crate::track;
     use regrasp_api::{FingerIndex, Random};
     use regrasp_plan::{PoseRecord, StateRecord};
@@ -189,17 +216,26 @@ mod tests {
             let mut motions = Motions::new(&scene);
             motions.step(&scene, &leg, 0);
             for body in (0..scene.bodies.len()).filter(|&b| moved.contains(&scene.bodies[b].body)) {
-                let said = *motions.seen(&scene, body, &frames);
-                for (k, said) in said.iter().enumerate() {
+                for (from, to) in (0..SAMPLES).map(|k| (k, k + 1)).chain([(0, 5), (5, 10), (0, 10)]) {
+                    let said = motions.seen(&scene, body, (from, to), &frames);
                     let mut fine = Frames::new(&hand);
+                    let count = 40 * (to - from);
                     let mut at = |i: usize| {
-                        fine.place(&hand, &leg, 0, (k as f64 + i as f64 / 40.0) / SAMPLES as f64);
+                        fine.place(&hand, &leg, 0, (from as f64 + i as f64 / 40.0) / SAMPLES as f64);
                         points(&scene, body, &fine)
                     };
-                    let path: Vec<Vec<Vec3>> = (0..=40).map(&mut at).collect();
+                    let path: Vec<Vec<Vec3>> = (0..=count).map(&mut at).collect();
+                    let duration = to - from;
+                    let before = motions.ends(&scene, body, from, &frames).unwrap();
+                    let play = motions.play_seen(body, &before, duration);
                     for point in 0..path[0].len() {
+                        let (first, last) = (path[0][point], path[count][point]);
+                        for (i, place) in path.iter().enumerate() {
+                            let straight = first + (last - first) * (i as f64 / count as f64);
+                            assert!((place[point] - straight).norm() <= play + 1e-12);
+                        }
                         let length: f64 = path.windows(2).map(|w| (w[1][point] - w[0][point]).norm()).sum();
-                        assert!(length <= *said, "{length} {said}");
+                        assert!(length <= said, "{length} {said}");
                         tightest = tightest.max(length / said);
                     }
                 }

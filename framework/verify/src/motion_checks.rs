@@ -99,8 +99,8 @@ fn contact_difference(a: &Option<ContactRecord>, b: &Option<ContactRecord>) -> f
     match (a, b) {
         (None, None) => 0.0,
         (Some(a), Some(b)) => {
-            let numbers = |c: &ContactRecord| [c.point_O, c.normal_O, c.point_F].concat();
-            largest(&numbers(a), &numbers(b))
+            let point = largest(&a.point_O, &b.point_O).max(largest(&a.normal_O, &b.normal_O));
+            point.max(largest(&a.point_F, &b.point_F))
         }
         _ => f64::INFINITY,
     }
@@ -116,11 +116,9 @@ pub(crate) fn rest(hand: &Chains, legs: &[Leg<'_>]) -> Check {
     for leg in legs {
         let Some(moving) = leg.moving else { continue };
         for (k, pair) in leg.states.windows(2).enumerate() {
-            let pose = |i: usize| {
-                let object = &pair[i].record.object;
-                [&object.position[..], &object.orientation].concat()
-            };
-            gauge.note(largest(&pose(0), &pose(1)), || leg.at(k));
+            let [a, b] = [&pair[0].record.object, &pair[1].record.object];
+            let turned = largest(&a.orientation, &b.orientation);
+            gauge.note(largest(&a.position, &b.position).max(turned), || leg.at(k));
             for finger in (0..hand.fingers.len()).filter(|&finger| finger != moving) {
                 let (a, b) = (&pair[0].record.joints[finger], &pair[1].record.joints[finger]);
                 gauge.note(largest(a, b), || Place { finger: Some(finger), ..leg.at(k) });

@@ -64,9 +64,9 @@ impl Scene {
         hand: &Chains,
         travel: &[f64],
     ) -> Result<Self, String> {
-        let solid = Arc::new(Solid::new(&object.mesh)?);
+        let solid = Arc::new(Solid::new(&object.mesh));
         let (touched, bound) = match &object.twin {
-            Some(twin) => (Arc::new(Solid::new(&twin.mesh)?), twin.bound),
+            Some(twin) => (Arc::new(Solid::new(&twin.mesh)), twin.bound),
             None => (solid.clone(), 0.0),
         };
         let mut scene = Self {

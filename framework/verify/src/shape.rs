@@ -2,7 +2,7 @@
 
 use crate::border::{parry_pose, segment, vector};
 use crate::object::mesh_of;
-use crate::solid::Solid;
+use crate::solid::{ANYWHERE, Solid};
 use nalgebra::Point3;
 use parry3d_f64::math::Pose as ParryPose;
 use parry3d_f64::query::details::distance_segment_segment;
@@ -81,6 +81,30 @@ impl Core {
         (local.abs() - half).sup(&Vec3::zeros()).norm()
     }
 
+    /// A lower bound of how far a box whose body is at `X_HB` is from some points in H, any of which may be
+    /// off by `play` (m): the box around them, along the axes of this one. Minus infinity for what is no box.
+    pub(crate) fn box_to_points(&self, X_HB: &Pose, points_H: &[Vec3], play: f64) -> f64 {
+        let Self::Cuboid { X, half } = self else { return f64::NEG_INFINITY };
+        let infinity = Vec3::repeat(f64::INFINITY);
+        let (mut low, mut high) = (infinity, -infinity);
+        for p in points_H {
+            let p_B = X_HB.inverse_transform_point(&Point3::from(*p));
+            let local = X.inverse_transform_point(&p_B).coords;
+            (low, high) = (low.inf(&local), high.sup(&local));
+        }
+        let apart = (low - half).sup(&(-half - high)) - Vec3::repeat(play);
+        apart.sup(&Vec3::zeros()).norm()
+    }
+
+    /// The ends of a point or segment.
+    pub(crate) fn ends(&self) -> Option<[Vec3; 2]> {
+        match self {
+            Self::Point(p) => Some([*p, *p]),
+            Self::Segment(p, q) => Some([*p, *q]),
+            _ => None,
+        }
+    }
+
     fn rank(&self) -> u8 {
         match self {
             Self::Point(_) => 0,
@@ -120,7 +144,7 @@ fn mesh(source: &MeshSource, X: &Pose) -> Result<Core, String> {
     let mesh = mesh_of(source)?;
     let vertices = mesh.vertices().iter().map(|v| (X * Point3::from(*v)).coords).collect();
     let moved = Mesh::new(vertices, mesh.facets().to_vec()).map_err(|error| error.to_string())?;
-    Ok(Core::Mesh(Arc::new(Solid::new(&moved)?)))
+    Ok(Core::Mesh(Arc::new(Solid::new(&moved))))
 }
 
 /// The distance of two cores given in frames A and B (m); not positive where they overlap.
@@ -149,7 +173,11 @@ pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: 
         }
         (Core::Segment(p, q), Core::Mesh(solid)) => {
             let (p, q) = (moved(p), moved(q));
-            if contained && solid.contains(&p) { 0.0 } else { solid.gap_to_segment(&p, &q, 0).distance }
+            if contained && solid.contains(&p) {
+                0.0
+            } else {
+                solid.gap_to_segment(&p, &q, ANYWHERE).distance
+            }
         }
         (Core::Cuboid { X, half }, Core::Cuboid { X: X_other, half: other }) => {
             let X = (X_BA * X).inv_mul(X_other);
@@ -193,7 +221,7 @@ fn from_point(p: &Vec3, core: &Core) -> f64 {
             cuboid(half).distance_to_local_point(vector(&local), false)
         }
         Core::Mesh(solid) => {
-            let closest = solid.closest(p, 0);
+            let closest = solid.closest(p, ANYWHERE);
             (p - closest.point).norm() * if closest.inside { -1.0 } else { 1.0 }
         }
         Core::HalfSpace { n, offset } => n.dot(p) - offset,

@@ -2,12 +2,17 @@
 
 use crate::border::{segment, vector};
 use crate::outer::Outer;
+use crate::supported::highest;
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::partitioning::BvhNode;
 use parry3d_f64::query::details::closest_points_segment_segment;
 use parry3d_f64::query::{ClosestPoints, PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::{Segment, TriMesh, TriMeshFlags, Triangle};
 use regrasp_api::{Mesh, Vec3};
+use std::sync::OnceLock;
+
+/// The facet that is likely to hold a closest point where nothing is known: one that faces it is looked for.
+pub(crate) const ANYWHERE: u32 = u32::MAX;
 
 /// With more vertices than this, the tree finds the outermost one faster than going through all.
 const FEW_VERTICES: usize = 1000;
@@ -21,7 +26,9 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Debug)]
 pub(crate) struct Solid {
     pub(crate) vertices: Vec<Vec3>,
-    mesh: TriMesh,
+    facets: Vec<[u32; 3]>,
+    /// With its tree, which takes longer to build than some plans to verify: made when it is first asked for.
+    tree: OnceLock<TriMesh>,
     outer: Outer,
 }
 
@@ -46,24 +53,29 @@ pub(crate) struct Gap {
 }
 
 impl Solid {
-    pub(crate) fn new(mesh: &Mesh) -> Result<Self, String> {
-        let vertices = mesh.vertices().iter().map(vector).collect();
-        let flags = TriMeshFlags::ORIENTED;
-        let tree = TriMesh::with_flags(vertices, mesh.facets().to_vec(), flags).map_err(|e| e.to_string())?;
-        Ok(Self { vertices: mesh.vertices().to_vec(), mesh: tree, outer: Outer::new(mesh) })
+    pub(crate) fn new(mesh: &Mesh) -> Self {
+        let (vertices, facets) = (mesh.vertices().to_vec(), mesh.facets().to_vec());
+        Self { vertices, facets, tree: OnceLock::new(), outer: Outer::new(mesh) }
     }
 
     pub(crate) fn surface(&self) -> &TriMesh {
-        &self.mesh
+        self.tree.get_or_init(|| {
+            let vertices = self.vertices.iter().map(vector).collect();
+            TriMesh::with_flags(vertices, self.facets.clone(), TriMeshFlags::ORIENTED)
+                .expect("a mesh has facets, and this flag asks for nothing of them")
+        })
     }
 
     fn triangle(&self, facet: u32) -> Triangle {
-        self.mesh.triangle(facet.min(self.mesh.num_triangles() as u32 - 1))
+        let facet = &self.facets[(facet as usize).min(self.facets.len() - 1)];
+        let [a, b, c] = facet.map(|corner| vector(&self.vertices[corner as usize]));
+        Triangle::new(a, b, c)
     }
 
     /// The closest point of the surface. `near` is a facet that is likely to hold it; it changes the cost
     /// alone.
     pub(crate) fn closest(&self, p: &Vec3, near: u32) -> Closest {
+        let near = if near == ANYWHERE { self.outer.facing(p) } else { near };
         match self.outer.closest(&self.vertices, p, near) {
             Some((point, facet)) => Closest { point, inside: false, facet },
             None => self.search(p, near),
@@ -76,14 +88,14 @@ impl Solid {
         let bound = self.triangle(near).project_local_point(p, false).point;
         // The facet's own distance must stay within the bound, rounding included.
         let bound = (bound - p).length() * (1.0 + 1e-9) + 1e-12;
-        let found = self.mesh.project_local_point_and_get_location_with_max_dist(p, false, bound);
+        let found = self.surface().project_local_point_and_get_location_with_max_dist(p, false, bound);
         let (projection, (facet, _)) =
-            found.unwrap_or_else(|| self.mesh.project_local_point_and_get_location(p, false));
+            found.unwrap_or_else(|| self.surface().project_local_point_and_get_location(p, false));
         Closest { point: from_vector(projection.point), inside: projection.is_inside, facet }
     }
 
     pub(crate) fn facet_count(&self) -> u32 {
-        self.mesh.num_triangles() as u32
+        self.facets.len() as u32
     }
 
     /// The corners of a facet (m), and its outward normal.
@@ -99,7 +111,7 @@ impl Solid {
     }
 
     pub(crate) fn contains(&self, p: &Vec3) -> bool {
-        self.closest(p, 0).inside
+        self.closest(p, ANYWHERE).inside
     }
 
     /// Where a segment comes closest to the surface; `near` as for [`Self::closest`].
@@ -109,6 +121,7 @@ impl Solid {
 
     /// The same where the distance is below `most` (m); else an upper bound of it, where `near` is.
     pub(crate) fn gap_below(&self, p: &Vec3, q: &Vec3, near: u32, most: f64) -> Result<Gap, Gap> {
+        let near = if near == ANYWHERE { self.outer.facing(&((p + q) / 2.0)) } else { near };
         match self.gap_at_end(p, q, near).or_else(|| self.gap_at_end(q, p, near)) {
             Some(gap) if gap.distance < most => Ok(gap),
             Some(gap) => Err(gap),
@@ -140,11 +153,13 @@ impl Solid {
     fn search_below(&self, p: &Vec3, q: &Vec3, near: u32, most: f64) -> Result<Gap, Gap> {
         let line = segment(p, q);
         let first = between(&self.triangle(near), &line);
+        let is_far = !self.is_least(p, q, first);
+        let (near, first) = if is_far { self.descend(near, &line) } else { (near, first) };
         let at_first = |is_parted: bool| {
             let gap = Gap { is_parted, ..Gap::new(first.0, first.1, near) };
             if first.0 < most { Ok(gap) } else { Err(gap) }
         };
-        if self.is_least(p, q, first) {
+        if !is_far || self.is_least(p, q, first) {
             return at_first(true);
         }
         let (low, high) = (line.a.min(line.b), line.a.max(line.b));
@@ -156,10 +171,31 @@ impl Solid {
             let boxes = (node.mins() - high).max(low - node.maxs()).max(Vector::ZERO).length();
             ball.max(boxes)
         };
-        let leaf = |facet: u32, _: f64| Some(between(&self.mesh.triangle(facet), &line));
-        match self.mesh.bvh().find_best(first.0.min(most), bound, leaf) {
+        let leaf = |facet: u32, _: f64| Some(between(&self.triangle(facet), &line));
+        match self.surface().bvh().find_best(first.0.min(most), bound, leaf) {
             Some((facet, (distance, away))) => Ok(Gap::new(distance, away, facet)),
             None => at_first(false),
+        }
+    }
+
+    /// From a facet to those beside it, or beside these, as long as one is closer to a segment: where that
+    /// ends, and how close it is.
+    fn descend(&self, near: u32, line: &Segment) -> (u32, (f64, Vector)) {
+        let near = near.min(self.facet_count() - 1);
+        let mut best = (near, between(&self.triangle(near), line));
+        loop {
+            let beside = self.outer.beside(best.0);
+            let beyond = beside.iter().flat_map(|&facet| self.outer.beside(facet));
+            let better = |facet: &u32| {
+                let gap = between(&self.triangle(*facet), line);
+                (gap.0 < best.1.0).then_some((*facet, gap))
+            };
+            let closest = |a: &(u32, (f64, Vector)), b: &(u32, (f64, Vector))| a.1.0.total_cmp(&b.1.0);
+            let next = beside.iter().filter_map(better).min_by(closest);
+            match next.or_else(|| beyond.filter_map(|facet| better(&facet)).min_by(closest)) {
+                Some(next) => best = next,
+                None => return best,
+            }
         }
     }
 
@@ -174,7 +210,7 @@ impl Solid {
     /// The largest of `n · v` over the vertices.
     pub(crate) fn support(&self, n: &Vec3) -> f64 {
         if self.vertices.len() <= FEW_VERTICES {
-            return self.vertices.iter().map(|v| n.dot(v)).fold(f64::NEG_INFINITY, f64::max);
+            return highest(&self.vertices, n);
         }
         let n = vector(n);
         let bound = |node: &BvhNode, _: f64| {
@@ -182,10 +218,10 @@ impl Solid {
             -(n.dot(node.center()) + n.abs().dot(half))
         };
         let leaf = |facet: u32, _: f64| {
-            let Triangle { a, b, c } = self.mesh.triangle(facet);
+            let Triangle { a, b, c } = self.triangle(facet);
             Some(-n.dot(a).max(n.dot(b)).max(n.dot(c)))
         };
-        self.mesh.bvh().find_best(f64::MAX, bound, leaf).map_or(f64::INFINITY, |(_, lowest)| -lowest)
+        self.surface().bvh().find_best(f64::MAX, bound, leaf).map_or(f64::INFINITY, |(_, lowest)| -lowest)
     }
 }
 

@@ -4,7 +4,7 @@ use regrasp_api::{PoseDescription, Primitive, Random};
 
 fn torus() -> Core {
     let mesh = regrasp_world::primitive_mesh(&Primitive::Torus { ring_radius: 0.05, tube_radius: 0.02 }, 600);
-    Core::Mesh(Arc::new(Solid::new(&mesh.unwrap()).unwrap()))
+    Core::Mesh(Arc::new(Solid::new(&mesh.unwrap())))
 }
 
 fn cube() -> Core {
@@ -49,7 +49,7 @@ fn segments_keep_the_least_distance_of_their_points() {
 fn boxes_and_meshes_agree_where_the_mesh_is_the_box() {
     let half = Vec3::new(0.02, 0.03, 0.01);
     let mesh = regrasp_world::primitive_mesh(&Primitive::Cuboid { half_size: half }, 12).unwrap();
-    let mesh = Core::Mesh(Arc::new(Solid::new(&mesh).unwrap()));
+    let mesh = Core::Mesh(Arc::new(Solid::new(&mesh)));
     let cuboid = Core::Cuboid { X: Pose::identity(), half };
     let mut random = Random::from_key(6, 0, 0, 0);
     for other in [torus(), cube(), Core::HalfSpace { n: Vec3::z(), offset: -0.05 }] {
@@ -106,7 +106,7 @@ fn supports_give_separating_planes() {
     let plane = n.dot(&a).min(n.dot(&b)) - solid.support(&n);
     assert!(distance > 0.02 && plane <= distance + 1e-12 && plane > distance - 1e-3, "{plane} {distance}");
     let fine = Primitive::Ellipsoid { semi_axes: Vec3::new(0.1, 0.2, 0.3) };
-    let fine = Solid::new(&regrasp_world::primitive_mesh(&fine, 5120).unwrap()).unwrap();
+    let fine = Solid::new(&regrasp_world::primitive_mesh(&fine, 5120).unwrap());
     let mut random = Random::from_key(8, 0, 0, 0);
     for _ in 0..50 {
         let n = random.direction();

@@ -4,8 +4,9 @@
 //! strictly inside every cone. (J. Kerr and B. Roth, "Analysis of multifingered hands", IJRR 1986; NUMERICS
 //! of this project, section 1.)
 
-use nalgebra::{Cholesky, Matrix6, SMatrix, Vector6};
-use regrasp_api::{Cone, MAX_FINGERS, Vec3, cross_matrix};
+use super::six::{Factor, Six};
+use nalgebra::Vector6;
+use regrasp_api::{Cone, MAX_FINGERS, Vec3};
 
 /// The least slack of a proof, for forces whose normal parts sum to 1: below, solvers and rounding decide,
 /// not the grasp.
@@ -57,6 +58,7 @@ impl Contact {
     }
 
     /// The tangential force whose scaled coordinates are `t`; symmetric.
+    #[inline]
     pub(crate) fn stretch(&self, t: &Vec3) -> Vec3 {
         match &self.more {
             None => t * self.mu,
@@ -76,6 +78,7 @@ impl Contact {
     }
 
     /// The wrench (force, torque) of a force in scaled coordinates.
+    #[inline]
     pub(crate) fn wrench(&self, y: &Force) -> Vector6<f64> {
         let force = self.n * y.normal + self.stretch(&y.tangential);
         let torque = self.r.cross(&force) + self.n * (self.gamma * y.spin + self.drag * y.normal);
@@ -84,28 +87,27 @@ impl Contact {
 
     /// Adds weight times the outer products of this contact's columns: normal with weight `w`, tangential and
     /// torsional with weight `u`.
-    fn accumulate(&self, sum: &mut Matrix6<f64>, w: f64, u: f64) {
+    #[inline]
+    fn accumulate(&self, sum: &mut Six, w: f64, u: f64) {
         let normal = stack(&self.n, &self.r.cross(&self.n));
         let mu_squared = u * self.mu * self.mu;
-        *sum += normal * normal.transpose() * (w - mu_squared);
+        sum.add(&normal, w - mu_squared);
         if self.drag != 0.0 {
-            let pressed = stack(&self.n, &(self.r.cross(&self.n) + self.n * self.drag));
-            *sum += (pressed * pressed.transpose() - normal * normal.transpose()) * w;
+            sum.add(&stack(&self.n, &(self.r.cross(&self.n) + self.n * self.drag)), w);
+            sum.add(&normal, -w);
         }
-        // J Jᵀ with J = [I; [r]×].
-        let mut J = SMatrix::<f64, 6, 3>::zeros();
-        J.fixed_rows_mut::<3>(0).fill_with_identity();
-        J.fixed_rows_mut::<3>(3).copy_from(&cross_matrix(&self.r));
-        *sum += J * J.transpose() * mu_squared;
+        sum.add_point(&self.r, mu_squared);
         if let Some((tangent, more)) = &self.more {
             let column = stack(tangent, &self.r.cross(tangent));
-            *sum += column * column.transpose() * (u * more * (2.0 * self.mu + more));
+            sum.add(&column, u * more * (2.0 * self.mu + more));
         }
-        let spin = stack(&Vec3::zeros(), &self.n);
-        *sum += spin * spin.transpose() * (u * self.gamma * self.gamma);
+        if self.gamma != 0.0 {
+            sum.add(&stack(&Vec3::zeros(), &self.n), u * self.gamma * self.gamma);
+        }
     }
 }
 
+#[inline]
 fn stack(force: &Vec3, torque: &Vec3) -> Vector6<f64> {
     Vector6::new(force.x, force.y, force.z, torque.x, torque.y, torque.z)
 }
@@ -122,8 +124,10 @@ pub(crate) struct Force {
 
 impl Force {
     /// How far inside its cone the force is; negative outside.
+    #[inline]
     pub(crate) fn slack(&self) -> f64 {
-        self.normal - self.tangential.norm().hypot(self.spin)
+        let tangential = self.tangential.norm();
+        self.normal - if self.spin == 0.0 { tangential } else { tangential.hypot(self.spin) }
     }
 }
 
@@ -159,7 +163,7 @@ pub(crate) fn prove(contacts: &[Contact], forces: &Forces) -> Option<Proof> {
 
 /// Corrects forces so that their wrench is a wanted one.
 pub(crate) struct Correction {
-    factor: Cholesky<f64, nalgebra::U6>,
+    factor: Factor,
     /// A lower bound of the grasp map's smallest singular value: 1/‖(G Gᵀ)⁻¹‖ ≤ λ_min(G Gᵀ).
     pub(crate) singular: f64,
 }
@@ -167,16 +171,17 @@ pub(crate) struct Correction {
 impl Correction {
     /// `None` where the grasp map has no rank 6.
     pub(crate) fn new(contacts: &[Contact]) -> Option<Self> {
-        let mut gram = Matrix6::zeros();
+        let mut gram = Six::ZERO;
         contacts.iter().for_each(|contact| contact.accumulate(&mut gram, 1.0, 1.0));
-        let factor = Cholesky::new(gram)?;
-        let singular = 1.0 / factor.inverse().norm().sqrt();
+        let factor = gram.factor()?;
+        let singular = factor.least().sqrt();
         (singular >= LEAST_SINGULAR).then_some(Self { factor, singular })
     }
 
     /// The forces closest to `forces` that lie in these contacts' planes and have the wanted wrench.
     ///
     /// G Gᵀ λ = G y - wanted; y - Gᵀ λ has it.
+    #[inline]
     pub(crate) fn towards(&self, contacts: &[Contact], forces: &Forces, wanted: &Vector6<f64>) -> Forces {
         let mut forces = *forces;
         let mut residual = -wanted;
@@ -226,13 +231,27 @@ fn check(contacts: &[Contact], forces: &Forces, correction: &Correction) -> Opti
 /// slack² (those columns' outer products). The normal columns count too where the force moves by slack/√2 in
 /// all directions, which takes up to that much more normal force. The larger of the two bounds holds.
 pub(crate) fn margin(contacts: &[Contact], proof: &Proof) -> f64 {
-    let (mut tangential, mut all, mut more) = (Matrix6::zeros(), Matrix6::zeros(), 1.0);
+    let (mut tangential, mut all, mut more) = (Six::ZERO, Six::ZERO, 1.0);
     for (contact, force) in contacts.iter().zip(&proof.forces) {
         let slack = force.slack();
         contact.accumulate(&mut tangential, 0.0, slack * slack);
         contact.accumulate(&mut all, slack * slack / 2.0, slack * slack / 2.0);
         more += slack / std::f64::consts::SQRT_2;
     }
-    let smallest = |matrix: Matrix6<f64>| matrix.symmetric_eigenvalues().min().max(0.0).sqrt();
-    smallest(tangential).max(smallest(all) / more)
+    let smallest = |matrix: &Six| matrix.smallest_eigenvalue().max(0.0).sqrt();
+    smallest(&tangential).max(smallest(&all) / more)
+}
+
+/// No more than [`margin`], at a tenth of its cost: eigenvalues are bounded, not found.
+pub(crate) fn rough_margin(contacts: &[Contact], proof: &Proof) -> f64 {
+    let (mut tangential, mut all, mut more) = (Six::ZERO, Six::ZERO, 1.0);
+    for (contact, force) in contacts.iter().zip(&proof.forces) {
+        let slack = force.slack();
+        contact.accumulate(&mut tangential, 0.0, slack * slack);
+        contact.accumulate(&mut all, slack * slack / 2.0, slack * slack / 2.0);
+        more += slack / std::f64::consts::SQRT_2;
+    }
+    let bound = |matrix: &Six| matrix.factor().map_or(0.0, |factor| factor.least().sqrt());
+    // Less a part for rounding, which [`margin`] has too.
+    (1.0 - 1e-6) * bound(&tangential).max(bound(&all) / more)
 }

@@ -253,7 +253,8 @@ impl HoldingCheck {
         let weight = Vector6::new(f.x, f.y, f.z, 0.0, 0.0, 0.0);
         let force = self.load.disturbance_force / self.unit;
         let torque = self.load.disturbance_torque / (self.unit * self.length);
-        let mut wanted = vec![weight];
+        let mut wanted = Vec::with_capacity(1 + 2 * icosahedron().len());
+        wanted.push(weight);
         if force > 0.0 || torque > 0.0 {
             for v in icosahedron() {
                 wanted.push(weight + Vector6::new(v.x, v.y, v.z, 0.0, 0.0, 0.0) * force);
@@ -301,6 +302,7 @@ impl HoldingCheck {
 
     /// The room of one contact's force: to its cone, to the largest normal force, and of its joints' efforts
     /// (of the limit).
+    #[inline]
     fn slack(&self, grasp: &Grasp<'_>, i: usize, forces: &Forces) -> f64 {
         let force = &forces[i];
         let mut slack = force.slack();

@@ -6,7 +6,7 @@ use super::load::icosahedron;
 use crate::hand::Chains;
 use crate::track::{Frames, Leg};
 use crate::verdict::{Check, Gauge};
-use nalgebra::Vector6;
+use nalgebra::{Matrix3, Vector6};
 use regrasp_api::{HoldLoad, MAX_FINGERS, Vec3};
 use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, Holds, HoldsAt, Place};
 use std::cmp::Ordering;
@@ -271,51 +271,83 @@ fn is_worse(kept: &Option<Extreme>, value: f64, worse: Ordering) -> bool {
     kept.as_ref().is_none_or(|kept| value.partial_cmp(&kept.value) == Some(worse))
 }
 
-/// How far forces may grow within cones and efforts.
-struct Room<'f> {
-    forces: &'f [Force],
-    /// The smallest forces that give a unit force along each axis of O: what gives another is their sum.
-    units: [Forces; 3],
-    /// Of each joint: its contact, what its share of an effort is of each part of the force there, and the
-    /// share now.
-    rows: Vec<(usize, (f64, Vec3, f64), f64)>,
+/// How far forces may grow within cones and efforts: what is worked out once for all pushes.
+///
+/// What contacts give on top of their forces is linear in the push, the smallest forces that have its wrench:
+/// so a cone's boundary is a quadratic in the multiple whose coefficients are linear and quadratic in the
+/// push, and an effort's share is linear in it.
+struct Room {
+    cones: [ConeRoom; MAX_FINGERS],
+    count: usize,
+    /// Of each joint: how its share of an effort grows along each axis of O, and the share now.
+    rows: Vec<(Vec3, f64)>,
 }
 
-impl<'f> Room<'f> {
-    fn new(held: &Held, forces: &'f Forces, correction: &Correction, length: f64) -> Self {
+/// The room of one contact's force in its cone.
+#[derive(Clone, Copy, Default)]
+struct ConeRoom {
+    is_outside: bool,
+    /// normal² - |tangential|² of the force ...
+    form: f64,
+    /// ... how twice that of the force and its change grows along each axis of O ...
+    slope: Vec3,
+    /// ... and that of the change, along two axes.
+    curve: Matrix3<f64>,
+}
+
+impl Room {
+    fn new(held: &Held, forces: &Forces, correction: &Correction, length: f64) -> Self {
         let contacts = &held.contacts[..];
         let unit = |axis: usize| {
             let mut wanted = Vector6::zeros();
             wanted[axis] = 1.0;
             correction.towards(contacts, &[Force::default(); MAX_FINGERS], &wanted)
         };
-        let mut rows = Vec::new();
+        let units: [Forces; 3] = std::array::from_fn(unit);
+        let mut cones = [ConeRoom::default(); MAX_FINGERS];
+        for (i, cone) in cones.iter_mut().enumerate().take(contacts.len()) {
+            let (force, unit) = (&forces[i], |axis: usize| &units[axis][i]);
+            cone.form = form(force, force);
+            cone.is_outside = cone.form <= 0.0 || force.normal <= 0.0;
+            cone.slope = Vec3::from_fn(|axis, _| 2.0 * form(force, unit(axis)));
+            cone.curve = Matrix3::from_fn(|a, b| form(unit(a), unit(b)));
+        }
+        let mut rows = Vec::with_capacity(held.rows.iter().map(Vec::len).sum());
         for (i, (contact, behind)) in contacts.iter().zip(&held.rows).enumerate() {
             rows.extend(behind.iter().map(|row| {
                 let parts = row.of(contact, length, 1.0);
-                (i, parts, share_of(&parts, &forces[i]))
+                (Vec3::from_fn(|axis, _| share_of(&parts, &units[axis][i])), share_of(&parts, &forces[i]))
             }));
         }
-        Self { forces: &forces[..contacts.len()], units: std::array::from_fn(unit), rows }
+        Self { cones, count: contacts.len(), rows }
     }
 
     /// The largest multiple of a force on the object (in O) that the contacts can give on top; 0 where the
     /// forces are outside already.
     fn reach(&self, push_O: &Vec3) -> f64 {
-        let mut more = [Force::default(); MAX_FINGERS];
-        for (unit, part) in self.units.iter().zip(push_O.iter()) {
-            for (more, unit) in more.iter_mut().zip(unit) {
-                more.normal += unit.normal * part;
-                more.tangential += unit.tangential * *part;
-                more.spin += unit.spin * part;
-            }
-        }
-        let cones = self.forces.iter().zip(&more).map(|(force, more)| reach_of_cone(force, more));
-        let efforts = self.rows.iter().map(|(i, parts, now)| {
-            let rate = share_of(parts, &more[*i]);
+        let cones = self.cones[..self.count].iter().map(|cone| cone.reach(push_O));
+        let efforts = self.rows.iter().map(|(rates, now)| {
+            let rate = rates.dot(push_O);
             if rate == 0.0 { f64::INFINITY } else { ((rate.signum() - now) / rate).max(0.0) }
         });
         cones.chain(efforts).fold(1e6, f64::min)
+    }
+}
+
+/// A cone's form: positive inside, for a force and itself.
+fn form(a: &Force, b: &Force) -> f64 {
+    a.normal * b.normal - a.tangential.dot(&b.tangential)
+}
+
+impl ConeRoom {
+    /// The smallest λ > 0 at which force + λ more leaves the cone normal ≥ |tangential|.
+    fn reach(&self, push_O: &Vec3) -> f64 {
+        if self.is_outside {
+            return 0.0;
+        }
+        let (slope, curve) = (self.slope.dot(push_O), push_O.dot(&(self.curve * push_O)));
+        let root = (slope * slope - 4.0 * curve * self.form).max(0.0).sqrt();
+        if root > slope { 2.0 * self.form / (root - slope) } else { f64::INFINITY }
     }
 }
 
@@ -335,15 +367,4 @@ fn share_of((normal, tangential, spin): &(f64, Vec3, f64), force: &Force) -> f64
 /// The largest share of an effort limit behind the contact with this number.
 fn effort_of(held: &Held, i: usize, force: &Force, length: f64) -> f64 {
     held.rows[i].iter().map(|row| share(row, &held.contacts[i], force, length).abs()).fold(0.0, f64::max)
-}
-
-/// The smallest λ > 0 at which force + λ more leaves the cone normal ≥ |tangential|.
-fn reach_of_cone(force: &Force, more: &Force) -> f64 {
-    let form = |a: &Force, b: &Force| a.normal * b.normal - a.tangential.dot(&b.tangential);
-    let (q, slope, curve) = (form(force, force), 2.0 * form(force, more), form(more, more));
-    if q <= 0.0 || force.normal <= 0.0 {
-        return 0.0;
-    }
-    let root = (slope * slope - 4.0 * curve * q).max(0.0).sqrt();
-    if root > slope { 2.0 * q / (root - slope) } else { f64::INFINITY }
 }

@@ -135,15 +135,17 @@ fn best(contacts: &[Contact], correction: &Correction, wanted: &[Vector6<f64>; C
 }
 
 /// The regular icosahedron whose faces touch the unit ball.
-pub(super) fn icosahedron() -> Vec<Vec3> {
-    let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
-    let size = 3.0_f64.sqrt() / (golden * golden);
-    let mut vertices = Vec::with_capacity(12);
-    for (short, long) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
-        let turned = [[0.0, short, long], [short, long, 0.0], [long, 0.0, short]];
-        vertices.extend(turned.map(|vertex| Vec3::from(vertex) * size));
-    }
-    vertices
+pub(super) fn icosahedron() -> &'static [Vec3; 12] {
+    static VERTICES: std::sync::LazyLock<[Vec3; 12]> = std::sync::LazyLock::new(|| {
+        let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
+        let size = 3.0_f64.sqrt() / (golden * golden);
+        let corners = [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)];
+        std::array::from_fn(|k| {
+            let (short, long) = corners[k / 3];
+            Vec3::from([[0.0, short, long], [short, long, 0.0], [long, 0.0, short]][k % 3]) * size
+        })
+    });
+    &VERTICES
 }
 
 #[cfg(test)]

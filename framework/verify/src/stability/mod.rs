@@ -13,6 +13,8 @@ mod held;
 mod holding;
 mod holds;
 mod load;
+mod own;
+mod six;
 mod socp;
 
 use crate::touch::Touch;
@@ -58,10 +60,19 @@ pub(crate) struct StabilityCheck {
 struct Margin {
     contacts: Vec<Contact>,
     lower: f64,
+    /// What proves more than `lower`, as long as that is a rough bound.
+    rough: Option<Proof>,
     place: Place,
 }
 
 impl Margin {
+    /// Makes a rough bound as good as its proof; whether it was one.
+    fn settle(&mut self) -> bool {
+        let Some(proof) = self.rough.take() else { return false };
+        self.lower = self.lower.max(force::margin(&self.contacts, &proof));
+        true
+    }
+
     /// Raises the bound by a proof of another grasp, where it proves more.
     fn sharpen(&mut self, proof: &Proof) {
         if let Some(proof) = force::prove(&self.contacts, &proof.forces) {
@@ -151,15 +162,16 @@ impl StabilityCheck {
                 self.carried = Some(proof);
                 self.gauge.note(proof.slack, place);
                 if sample.is_multiple_of(SAMPLES) {
-                    let lower = force::margin(&contacts, &proof);
-                    self.margins.push(Margin { contacts, lower, place: leg.at(state + sample / SAMPLES) });
+                    let (lower, rough) = (force::rough_margin(&contacts, &proof), Some(proof));
+                    let place = leg.at(state + sample / SAMPLES);
+                    self.margins.push(Margin { contacts, lower, rough, place });
                 }
             }
             Err(slack) => {
                 self.carried = None;
                 self.failures += 1;
                 self.gauge.note(slack, place);
-                self.margins.push(Margin { contacts: vec![], lower: 0.0, place: place() });
+                self.margins.push(Margin { contacts: vec![], lower: 0.0, rough: None, place: place() });
             }
         }
     }
@@ -220,7 +232,7 @@ impl StabilityCheck {
             return Some(last.lower);
         }
         let lower = best(&contacts).map_or(0.0, |proof| force::margin(&contacts, &proof));
-        self.margins.push(Margin { contacts, lower, place: Place::default() });
+        self.margins.push(Margin { contacts, lower, rough: None, place: Place::default() });
         Some(lower)
     }
 
@@ -245,9 +257,8 @@ impl StabilityCheck {
     /// The smallest margin, for the certificate: bounds that a carried force left loose are sharpened with
     /// the best one, which is often nearly the best of grasps close by.
     pub(crate) fn extreme(&mut self) -> Option<Extreme> {
-        let smallest = |a: &&mut Margin, b: &&mut Margin| a.lower.total_cmp(&b.lower);
         for _ in 0..MOST_REFINEMENTS {
-            let worst = self.margins.iter_mut().min_by(smallest)?;
+            let worst = smallest(&mut self.margins)?;
             let before = worst.lower;
             let Ok(proof) = best(&worst.contacts) else { break };
             worst.lower = before.max(force::margin(&worst.contacts, &proof));
@@ -256,10 +267,13 @@ impl StabilityCheck {
                 break;
             }
             for other in self.margins.iter_mut().filter(|other| other.lower < refined) {
-                other.sharpen(&proof);
+                other.settle();
+                if other.lower < refined {
+                    other.sharpen(&proof);
+                }
             }
         }
-        let worst = self.margins.iter().min_by(|a, b| a.lower.total_cmp(&b.lower))?;
+        let worst = smallest(&mut self.margins)?;
         Some(Extreme::new(worst.lower, worst.place.clone(), HoldsAt::EveryState))
     }
 
@@ -274,8 +288,28 @@ impl StabilityCheck {
     }
 }
 
-/// The solver's best force, checked.
+/// The margin of the smallest bound, which is no rough one.
+fn smallest(margins: &mut [Margin]) -> Option<&mut Margin> {
+    let order = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
+    loop {
+        let (k, _) = margins.iter().enumerate().map(|(k, margin)| (k, margin.lower)).min_by(order)?;
+        if !margins[k].settle() {
+            return Some(&mut margins[k]);
+        }
+    }
+}
+
+/// The best force, checked: where the quick search proves closure, the solver is not asked.
 fn best(contacts: &[Contact]) -> Result<Proof, f64> {
+    let quick = own::best_forces(contacts);
+    if let Some(proof) = quick.and_then(|forces| force::prove(contacts, &forces)) {
+        return Ok(proof);
+    }
+    solved(contacts)
+}
+
+/// The solver's best force, checked.
+fn solved(contacts: &[Contact]) -> Result<Proof, f64> {
     let Some((forces, slack)) = socp::best_forces(contacts) else { return Err(f64::NEG_INFINITY) };
     // What the solver claims beyond what can be proved counts as nothing.
     force::prove(contacts, &forces).ok_or(slack.min(0.0))

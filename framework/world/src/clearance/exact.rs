@@ -7,7 +7,7 @@ use parry3d_f64::math::Pose as ParryPose;
 use parry3d_f64::query::{self, ClosestPoints, PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::{Ball, Capsule, ConvexPolyhedron, Cuboid, Segment, Shape, TriMesh, TriMeshFlags};
 use regrasp_api::{Mesh, Pose, Vec3};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A solid in its own frame S.
 #[derive(Clone)]
@@ -27,8 +27,11 @@ pub(crate) enum Solid {
 
 /// A closed mesh, prepared for distances.
 pub(crate) struct MeshSolid {
-    surface: TriMesh,
+    /// With a tree that takes long to build, and that round and flat objects hardly ever need: see
+    /// [`Self::surface`].
+    surface: OnceLock<TriMesh>,
     vertices: Vec<Vec3>,
+    facets: Vec<[u32; 3]>,
     /// One vertex of each connected component: the surfaces being apart, it tells whether the component is
     /// inside another body.
     roots: Vec<Vec3>,
@@ -44,17 +47,24 @@ const FEW_CORNERS: usize = 300;
 
 impl MeshSolid {
     pub fn new(mesh: &Mesh) -> Self {
-        let vertices: Vec<_> = mesh.vertices().iter().map(to_glam).collect();
         let roots = roots(mesh);
         let hull = Hull::of(mesh, roots.len());
-        let is_small = hull.is_some() && vertices.len() <= FEW_CORNERS;
-        let corners = is_small.then(|| vertices.clone());
+        let is_small = hull.is_some() && mesh.vertices().len() <= FEW_CORNERS;
+        let corners = is_small.then(|| mesh.vertices().iter().map(to_glam).collect());
         let polyhedron =
             corners.and_then(|corners| ConvexPolyhedron::from_convex_mesh(corners, mesh.facets()));
-        let surface = TriMesh::with_flags(vertices, mesh.facets().to_vec(), TriMeshFlags::ORIENTED)
-            .expect("a checked mesh has facets");
         let bounds = Bounds::of(mesh.vertices().iter().copied());
-        Self { surface, vertices: mesh.vertices().to_vec(), roots, bounds, hull, polyhedron }
+        let (vertices, facets) = (mesh.vertices().to_vec(), mesh.facets().to_vec());
+        Self { surface: OnceLock::new(), vertices, facets, roots, bounds, hull, polyhedron }
+    }
+
+    /// The surface for parry, made when it is first asked for: the same whoever asks.
+    fn surface(&self) -> &TriMesh {
+        self.surface.get_or_init(|| {
+            let vertices = self.vertices.iter().map(to_glam).collect();
+            TriMesh::with_flags(vertices, self.facets.clone(), TriMeshFlags::ORIENTED)
+                .expect("a checked mesh has facets")
+        })
     }
 
     /// Signed distance of a point (m) that is known to be at most `limit` (m) from the surface, which makes
@@ -63,9 +73,9 @@ impl MeshSolid {
         let p = to_glam(p);
         let limit = limit * (1.0 + 1e-9);
         let projection = self
-            .surface
+            .surface()
             .project_local_point_and_get_location_with_max_dist(p, false, limit)
-            .map_or_else(|| self.surface.project_local_point(p, false), |(projection, _)| projection);
+            .map_or_else(|| self.surface().project_local_point(p, false), |(projection, _)| projection);
         let distance = (p - projection.point).length();
         if projection.is_inside { -distance } else { distance }
     }
@@ -90,18 +100,18 @@ impl MeshSolid {
     pub fn clear_of_rod(&self, rod: &Rod, clear: f64) -> bool {
         let radius = rod.radius + clear;
         let touches = if rod.a == rod.b {
-            self.surface.distance_to_local_point(to_glam(&rod.a), false).abs() <= radius
+            self.surface().distance_to_local_point(to_glam(&rod.a), false).abs() <= radius
         } else {
             let capsule = Capsule::new(to_glam(&rod.a), to_glam(&rod.b), radius);
             let identity = ParryPose::identity();
-            query::intersection_test(&identity, &self.surface, &identity, &capsule)
+            query::intersection_test(&identity, self.surface(), &identity, &capsule)
                 .map_or(true, |answer| answer.intersecting)
         };
         !touches && !self.contains(&rod.a)
     }
 
     fn contains(&self, p: &Vec3) -> bool {
-        self.bounds.distance(p) == 0.0 && self.surface.contains_local_point(to_glam(p))
+        self.bounds.distance(p) == 0.0 && self.surface().contains_local_point(to_glam(p))
     }
 
     /// The least n · x over the solid (m).
@@ -230,7 +240,7 @@ impl<'a> Core<'a> {
                 Self { radius: rod.radius, ..at_origin(CoreShape::Segment(segment)) }
             }
             Solid::Cuboid { half_size } => at_origin(CoreShape::Cuboid(Cuboid::new(to_glam(half_size)))),
-            Solid::Mesh(mesh) => at_origin(CoreShape::Mesh(&mesh.surface)),
+            Solid::Mesh(mesh) => at_origin(CoreShape::Mesh(mesh.surface())),
             Solid::HalfSpace { .. } => unreachable!("half-spaces are handled before"),
         }
     }

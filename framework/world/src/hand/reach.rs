@@ -30,7 +30,7 @@ fn sweep(screws: &[Screw], p_HF0: &Vec3, limits: &[(f64, f64)]) -> Swept {
     let mut largest = -1.0;
     for (index, (screw, (lower, upper))) in screws.iter().zip(limits).enumerate().skip(1).rev() {
         let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
-        let moved = screw.move_point(&swept.center, middle);
+        let [moved, tip] = screw.move_points([&swept.center, &swept.middle], middle);
         let added = match screw.kind {
             JointKind::Prismatic => {
                 swept.center = moved;
@@ -43,7 +43,7 @@ fn sweep(screws: &[Screw], p_HF0: &Vec3, limits: &[(f64, f64)]) -> Swept {
                 (moved - foot).norm() * sin
             }
         };
-        swept.middle = screw.move_point(&swept.middle, middle);
+        swept.middle = tip;
         swept.radius += added;
         if added > largest {
             (largest, swept.widest) = (added, index);
@@ -167,11 +167,20 @@ fn tips(screws: &[Screw], p_HF0: &Vec3, ranges: &[JointRange]) -> Vec<Vec3> {
 /// SODA 2003).
 fn enclosing_center(points: &[Vec3]) -> Vec3 {
     let mut center = points.iter().sum::<Vec3>() / points.len() as f64;
+    // Coordinate by coordinate, so that the compiler takes several points at a time.
+    let [x, y, z] = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<_>>());
+    let mut squares = vec![0.0; points.len()];
     for round in 1..=200 {
-        let distance = |p: &&Vec3| (*p - center).norm_squared();
-        let farthest = points.iter().max_by(|a, b| distance(a).total_cmp(&distance(b)));
-        if let Some(farthest) = farthest {
-            center += (farthest - center) / f64::from(round + 1);
+        let mut most = 0.0;
+        for (((square, x), y), z) in squares.iter_mut().zip(&x).zip(&y).zip(&z) {
+            let (x, y, z) = (x - center.x, y - center.y, z - center.z);
+            *square = x * x + y * y + z * z;
+        }
+        for square in &squares {
+            most = if *square > most { *square } else { most };
+        }
+        if let Some(farthest) = squares.iter().rposition(|square| *square == most) {
+            center += (points[farthest] - center) / f64::from(round + 1);
         }
     }
     center

@@ -33,6 +33,17 @@ impl Screw {
         }
     }
 
+    /// Where the joint's motion by `q` (rad; m) takes some points (m).
+    pub fn move_points<const N: usize>(&self, points: [&Vec3; N], q: f64) -> [Vec3; N] {
+        match self.kind {
+            JointKind::Revolute => {
+                let (sin, cos) = q.sin_cos();
+                points.map(|p| self.point + turn(&self.axis, &(p - self.point), sin, cos))
+            }
+            JointKind::Prismatic => points.map(|p| p + self.axis * q),
+        }
+    }
+
     /// Where the joint's motion by `q` (rad; m) takes the free vector `v`.
     #[inline]
     pub fn move_vector(&self, v: &Vec3, q: f64) -> Vec3 {

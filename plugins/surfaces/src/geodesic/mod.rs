@@ -31,6 +31,7 @@ use schemars::JsonSchema;
 use search::Search;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
+use std::sync::OnceLock;
 use windows::Scratch;
 
 inventory::submit! {
@@ -89,7 +90,8 @@ impl Settings for GeodesicSettings {}
 pub struct Geodesic {
     tolerance: f64,
     rolling: Rolling,
-    balls: Vec<Ball>,
+    /// Found when the first path is asked for: many plans ask for none.
+    balls: OnceLock<Vec<Ball>>,
 }
 
 /// What a path needs beside the answer; one a thread, overwritten by every call.
@@ -109,8 +111,11 @@ impl Geodesic {
     pub fn new(settings: &GeodesicSettings, mesh: &Mesh, radius: f64) -> Result<Self, BuildError> {
         settings.validate()?;
         let rolling = Rolling::new(mesh, radius, settings.sharp_angle_deg, settings.step);
-        let balls = bound::inscribed_balls(&rolling.polyhedron, &rolling.closest);
-        Ok(Self { tolerance: settings.tolerance, rolling, balls })
+        Ok(Self { tolerance: settings.tolerance, rolling, balls: OnceLock::new() })
+    }
+
+    fn balls(&self) -> &[Ball] {
+        self.balls.get_or_init(|| bound::inscribed_balls(&self.rolling.polyhedron, &self.rolling.closest))
     }
 }
 
@@ -130,7 +135,7 @@ impl SurfaceParam for Geodesic {
         WORKSPACE.with_borrow_mut(|workspace| {
             let Workspace { search, legs, room } = workspace;
             let polyhedron = &self.rolling.polyhedron;
-            let bound = LowerBound::new(&self.balls, &from.p_OC, &to.p_OC);
+            let bound = LowerBound::new(self.balls(), &from.p_OC, &to.p_OC);
             let (start, target) = (self.rolling.spot(from), self.rolling.spot(to));
             let job = Search::new(polyhedron, search, bound, &target, self.tolerance, f64::INFINITY);
             let Some(last) = job.run(&start, context)? else {
