@@ -6,7 +6,8 @@ use regrasp::host::Registry;
 use regrasp::planner::{Clock, Silent};
 use regrasp::run::scenario;
 use regrasp::study::compare::{
-    Change, Draft, Execution, Folder, Level, Machine, RUN_THREAD, RunStatus, Seeds, execute, factorial, prepare,
+    Change, Draft, Execution, Folder, Level, Machine, RUN_THREAD, RunStatus, Seeds, execute, factorial,
+    prepare,
 };
 use regrasp_example_plugins as _;
 use std::collections::BTreeMap;

@@ -1,7 +1,8 @@
 //! Components of GS_n: Algorithm 2 by itself, without start, goal or Algorithm 3.
 
 use regrasp::api::{
-    CallError, Configuration, Context, FingerSet, NodeId, Path, PoseRequest, Target, Task, Vec3, angle_between,
+    CallError, Configuration, Context, FingerSet, NodeId, Path, PoseRequest, Target, Task, Vec3,
+    angle_between,
 };
 use regrasp::run::Setup;
 use regrasp::run::scenario::Scenario;
@@ -195,10 +196,8 @@ fn panel(explored: &Explored, sizes: &[(usize, usize)]) -> String {
         let rank = sizes.iter().position(|(first, _)| *first == explored.component[node]).unwrap_or(0);
         if sizes[rank].1 == 1 { "white" } else { COLOURS[rank.min(COLOURS.len() - 1)] }
     };
-    let mut text = format!(
-        "<circle r=\"{:.1}\" fill=\"#f6f8fb\" stroke=\"#c5cad3\"/>\n",
-        scale * std::f64::consts::PI
-    );
+    let mut text =
+        format!("<circle r=\"{:.1}\" fill=\"#f6f8fb\" stroke=\"#c5cad3\"/>\n", scale * std::f64::consts::PI);
     for &(a, b) in &explored.paths {
         let [a, b] = [a.0 as usize, b.0 as usize];
         // A way through the ball's surface comes in again on the other side: no straight line shows it.

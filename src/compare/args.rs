@@ -161,7 +161,10 @@ impl CompareArgs {
 
 fn suite(text: &str) -> Result<Suite, String> {
     let named = |suite: &Suite| suite.name() == text;
-    Suite::ALL.into_iter().find(named).ok_or_else(|| "it must be `paper`, `strict`, `harder` or `all`".to_owned())
+    Suite::ALL
+        .into_iter()
+        .find(named)
+        .ok_or_else(|| "it must be `paper`, `strict`, `harder` or `all`".to_owned())
 }
 
 fn pairs(text: &str) -> Result<Pairs, String> {

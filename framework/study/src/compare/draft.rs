@@ -338,9 +338,15 @@ mod tests {
         assert_eq!(choices.choice(Slot::Surface).id, "surface/steiner");
         let sampler = choices.choice(Slot::Sampler);
         assert!(sampler.id == "projection" && sampler.settings.is_empty(), "{sampler:?}");
-        assert_eq!(variants[1].choices(&choices).choice(Slot::Surface), Choices::default().choice(Slot::Surface));
+        assert_eq!(
+            variants[1].choices(&choices).choice(Slot::Surface),
+            Choices::default().choice(Slot::Surface)
+        );
         let levels = variants[0].variant().levels;
-        assert_eq!((levels[&Slot::Surface].as_str(), levels[&Slot::Sampler].as_str()), ("paper", "paper projection"));
+        assert_eq!(
+            (levels[&Slot::Surface].as_str(), levels[&Slot::Sampler].as_str()),
+            ("paper", "paper projection")
+        );
         assert_eq!(varied(&variants), levels.keys().copied().collect::<Vec<_>>());
     }
 }

@@ -3,7 +3,9 @@
 use super::{Change, DEFAULT_BAND, Hypotheses, Level, MeasureName, PRESET, Pairs, VariantDraft, factorial};
 use regrasp_api::{Refuse, Slot};
 use regrasp_host::{HostError, Preset, Registry, preset, slot_by_name};
-use regrasp_run::scenario::{self, BuiltIn, Document, PluginTable, PluginTables, Scenario, ScenarioError, key_path};
+use regrasp_run::scenario::{
+    self, BuiltIn, Document, PluginTable, PluginTables, Scenario, ScenarioError, key_path,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;

@@ -27,6 +27,9 @@ const HEAD: [&str; 15] = [
     "with a path in GS_n",
 ];
 
+/// What stands in the place of a variant in the paper's rows.
+const PUBLISHED: &str = "the paper, means";
+
 /// Counts of a run that are summed up by mean and median.
 const COUNTS: [fn(&RunRecord) -> f64; 2] =
     [|run| run.counts.generated_nodes as f64, |run| run.counts.roadmap.kept_nodes as f64];
@@ -50,9 +53,9 @@ pub fn search_markdown(rows: &[Vec<Cell<'_>>]) -> String {
     let mut lines = search_lines(rows);
     for line in &mut lines {
         line[0] = plain(&line[0]);
-        line[1] = if line[1].is_empty() { String::new() } else { code(&line[1]) };
+        line[1] = if line[1] == PUBLISHED { plain(PUBLISHED) } else { code(&line[1]) };
     }
-    let head = HEAD.map(|name| plain(name)).to_vec();
+    let head = HEAD.map(plain).to_vec();
     lines.insert(0, head);
     format!("# What the searches did\n\n{}\n{NOTES}", aligned(&lines))
 }
@@ -79,7 +82,7 @@ pub fn search_head() -> [&'static str; 15] {
 fn family(problem: &str, cells: &[&Cell<'_>]) -> Vec<Vec<String>> {
     let published = cells[0].scenario.paper.as_ref().map(|paper| {
         let counts = [paper.generated_nodes, paper.graph_nodes].map(|count| count.to_string());
-        let mut line = vec![problem.to_owned(), "the paper, means".into(), "-".into()];
+        let mut line = vec![problem.to_owned(), PUBLISHED.into(), "-".into()];
         line.extend([format!("{} (mean)", paper.time_s), "-".into()]);
         line.extend(counts);
         line.resize(HEAD.len(), "-".into());
@@ -101,7 +104,8 @@ fn line(problem: &str, cells: &[&Cell<'_>]) -> Vec<String> {
     let good: Vec<&RunRecord> = cells.iter().flat_map(|cell| cell.successes()).collect();
     let times = || good.iter().map(|run| run.times.planning_s);
     let second = |s: Option<f64>| s.map_or("-".to_owned(), three_digits);
-    let mut line = vec![problem.to_owned(), cells[0].variant.name.clone(), format!("{} of {all}", good.len())];
+    let mut line =
+        vec![problem.to_owned(), cells[0].variant.name.clone(), format!("{} of {all}", good.len())];
     line.push(second(median(times())));
     line.push(second(times().max_by(f64::total_cmp)));
     line.extend(COUNTS.map(|count| summed(&good, count)));
@@ -177,6 +181,9 @@ mod tests {
         assert_eq!((lines[1][11].as_str(), lines[1][14].as_str()), ("38 %", "1 of 24"));
         assert_eq!(part(2, 0..3), "ball|new|8 of 24");
         let text = search_markdown(&rows);
-        assert!(text.contains("| `rlg` |") && text.contains("GS\\_n"), "{text}");
+        assert!(
+            text.contains("`rlg` |") && text.contains("  the paper, means |") && text.contains("GS\\_n"),
+            "{text}"
+        );
     }
 }
