@@ -57,17 +57,15 @@ impl Admissible for Leavable {
             return Stable.admit_grasp(task, q, context);
         }
         let enough = grasp.contacts().len().saturating_sub(1);
-        // More contacts never make a grasp unstable: where n - 1 subsets are stable the whole is.
-        if task.stability.liftable(&grasp, enough, context)?.len() >= enough.max(1) {
-            // At rest; while the object moves, contacts may spin and their torsion is gone.
-            return Ok(if holds_in_transfers(task, q, &grasp, context)? {
-                None
-            } else {
-                Some(Reason::Stability)
-            });
+        // More contacts never make a grasp unstable: what is not stable as a whole need not be taken apart.
+        if !task.stability.test(&grasp, &mut Default::default(), context)?.is_stable() {
+            return Ok(Some(Reason::Stability));
         }
-        let whole = task.stability.test(&grasp, &mut Default::default(), context)?;
-        Ok(Some(if whole.is_stable() { Reason::Liftable } else { Reason::Stability }))
+        if task.stability.liftable(&grasp, enough, context)?.len() < enough.max(1) {
+            return Ok(Some(Reason::Liftable));
+        }
+        // At rest; while the object moves, contacts may spin and their torsion is gone.
+        Ok((!holds_in_transfers(task, q, &grasp, context)?).then_some(Reason::Stability))
     }
 }
 

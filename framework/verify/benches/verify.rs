@@ -3,7 +3,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use regrasp_verify::verify;
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/it/common/mod.rs"]
 mod common;
 
 fn whole_plan(criterion: &mut Criterion) {

@@ -6,8 +6,10 @@
 //! and random combinations are tried, the cheap test first.
 
 use regrasp_api::{
-    CallError, Configuration, Contact, Context, FingerIndex, FingerJoints, FingerSet, Reason, Task,
+    CallError, Configuration, Contact, Context, FingerIndex, FingerJoints, FingerSet, MAX_FINGERS, Reason,
+    Task,
 };
+use std::collections::HashMap;
 
 /// Combinations that are tried each time the pools have grown.
 const COMBINATIONS: usize = 24;
@@ -15,16 +17,21 @@ const COMBINATIONS: usize = 24;
 /// Contacts, with joints that reach them, that one finger may have.
 type Pool = Vec<(Contact, FingerJoints)>;
 
+/// Which contact of its pool each finger takes.
+type Drawn = [usize; MAX_FINGERS];
+
 /// The pools of all fingers, at one pose.
 pub(crate) struct Pools {
     holding: FingerSet,
     pools: Vec<Pool>,
+    /// Why what was tried is not admissible: small pools give the same combinations again and again.
+    refused: HashMap<Drawn, Reason>,
 }
 
 impl Pools {
     /// Empty pools of the fingers in `holding`, of a hand of `fingers`.
     pub fn new(holding: FingerSet, fingers: usize) -> Self {
-        Self { holding, pools: vec![Pool::new(); fingers] }
+        Self { holding, pools: vec![Pool::new(); fingers], refused: HashMap::new() }
     }
 
     /// Adds a contact to a finger's pool.
@@ -35,7 +42,7 @@ impl Pools {
     /// A combination that is admissible as a whole, if one of some random ones is; otherwise why the last was
     /// not. Of a finger whose pool is empty nothing is known but that.
     pub fn combine(
-        &self,
+        &mut self,
         task: &Task<'_>,
         resting: &Configuration,
         context: &mut Context<'_>,
@@ -45,25 +52,45 @@ impl Pools {
         }
         let mut last = Reason::Stability;
         for _ in 0..COMBINATIONS {
-            let q = self.draw(resting, context);
-            last = match task.admissible.admit_grasp(task, &q, context)? {
-                Some(reason) => reason,
-                None => match task.admissible.admit(task, &q, context)? {
-                    Some(reason) => reason,
-                    None => return Ok(Ok(q)),
+            let drawn = self.draw(context);
+            last = match self.refused.get(&drawn) {
+                Some(&reason) => reason,
+                None => match self.admit(task, resting, &drawn, context)? {
+                    Ok(q) => return Ok(Ok(q)),
+                    Err(reason) => {
+                        self.refused.insert(drawn, reason);
+                        reason
+                    }
                 },
             };
         }
         Ok(Err(last))
     }
 
-    fn draw(&self, resting: &Configuration, context: &mut Context<'_>) -> Configuration {
+    fn draw(&self, context: &mut Context<'_>) -> Drawn {
+        let mut drawn = [0; MAX_FINGERS];
+        for finger in self.holding.iter() {
+            drawn[finger.index()] = context.random.index(self.pools[finger.index()].len());
+        }
+        drawn
+    }
+
+    fn admit(
+        &self,
+        task: &Task<'_>,
+        resting: &Configuration,
+        drawn: &Drawn,
+        context: &mut Context<'_>,
+    ) -> Result<Result<Configuration, Reason>, CallError> {
         let mut q = resting.clone();
         for finger in self.holding.iter() {
-            let pool = &self.pools[finger.index()];
-            let (contact, joints) = pool[context.random.index(pool.len())];
+            let (contact, joints) = self.pools[finger.index()][drawn[finger.index()]];
             (q.contacts[finger], q.joints[finger]) = (Some(contact), joints);
         }
-        q
+        let refused = match task.admissible.admit_grasp(task, &q, context)? {
+            None => task.admissible.admit(task, &q, context)?,
+            refused => refused,
+        };
+        Ok(refused.map_or(Ok(q), Err))
     }
 }

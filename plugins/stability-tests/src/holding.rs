@@ -123,17 +123,15 @@ impl Holding {
         drag: impl Fn(usize) -> f64,
     ) -> Result<Held, CallError> {
         let round = is_round(grasp, lifted);
-        match round.then(|| self.load.bearings(grasp, lifted, self.parts(), drag)).flatten() {
-            Some(bearings) => Ok(Held::Round(bearings)),
-            None if self.drags(grasp) => Err(CallError::Unsupported {
-                plugin: ID.into(),
-                reason:
-                    "polyhedral cones of contacts that drag while they spin; set `hold.drag` = 0, or choose \
-                         a contact model with elliptic cones"
-                        .into(),
-            }),
-            None => Ok(Held::Edged(self.load.edged(grasp, lifted, self.parts()))),
+        if round && let Some(bearings) = self.load.bearings(grasp, lifted, self.parts(), drag) {
+            return Ok(Held::Round(bearings));
         }
+        if self.drags(grasp) {
+            let reason = "polyhedral cones of contacts that drag while they spin; set `hold.drag` = 0, or \
+                choose a contact model with elliptic cones";
+            return Err(CallError::Unsupported { plugin: ID.into(), reason: reason.into() });
+        }
+        Ok(Held::Edged(self.load.edged(grasp, lifted, self.parts())))
     }
 
     /// The verdict whichever way the contacts drag: each with all of its drag one way or the other, and last
@@ -142,19 +140,34 @@ impl Holding {
     /// What holds for both ways of one contact, the others the same, holds for every part of its drag between
     /// them: a blend of the two forces presses there with a blend of both presses, whose drag runs from one
     /// end to the other as the blend does, and keeps all bounds, which are convex. So the corners suffice.
-    fn judge(
+    fn verdict(
         &self,
         grasp: &Grasp<'_>,
         lifted: Option<FingerIndex>,
         hint: &mut Hint,
-    ) -> Result<Judged, CallError> {
+    ) -> Result<Stability, CallError> {
         for drag in self.corners(grasp) {
-            let judged = self.judge_one(self.held(grasp, lifted, drag)?, grasp, hint);
+            let stability = self.look(&self.held(grasp, lifted, drag)?, grasp, hint).0;
+            if !stability.is_stable() {
+                return Ok(stability);
+            }
+        }
+        Ok(self.look(&self.held(grasp, lifted, |_| 0.0)?, grasp, hint).0)
+    }
+
+    /// The same, with what it stands on.
+    fn judge(&self, grasp: &Grasp<'_>) -> Result<Judged, CallError> {
+        let judged = |held: Held| {
+            let (stability, found) = self.look(&held, grasp, &mut Hint::default());
+            Judged { stability, found, held }
+        };
+        for drag in self.corners(grasp) {
+            let judged = judged(self.held(grasp, None, drag)?);
             if !judged.stability.is_stable() {
                 return Ok(judged);
             }
         }
-        Ok(self.judge_one(self.held(grasp, lifted, |_| 0.0)?, grasp, hint))
+        Ok(judged(self.held(grasp, None, |_| 0.0)?))
     }
 
     /// All ways in which each contact drags with all of its drag; none where no contact drags.
@@ -164,8 +177,8 @@ impl Holding {
         (0..corners).map(move |k| move |contact: usize| if k >> contact & 1 == 0 { drag } else { -drag })
     }
 
-    fn judge_one(&self, held: Held, grasp: &Grasp<'_>, hint: &mut Hint) -> Judged {
-        let (found, holds) = match &held {
+    fn look(&self, held: &Held, grasp: &Grasp<'_>, hint: &mut Hint) -> (Stability, Found) {
+        let (found, holds) = match held {
             Held::Round(bearings) => {
                 let answer = self.load.held(bearings, &grasp.g_O, 1.0, hint);
                 (Found::Round(answer.balanced), answer.holds)
@@ -184,7 +197,7 @@ impl Holding {
             }
             _ => Stability::Unstable,
         };
-        Judged { stability, found, held }
+        (stability, found)
     }
 
     fn certificate(&self, judged: &Judged, center_O: &Vec3) -> Certificate {
@@ -287,7 +300,7 @@ impl StabilityTest for Holding {
         context: &mut Context<'_>,
     ) -> Result<Stability, CallError> {
         context.count_call(Slot::StabilityTest);
-        Ok(self.judge(grasp, None, hint)?.stability)
+        self.verdict(grasp, None, hint)
     }
 
     fn assess(
@@ -297,7 +310,7 @@ impl StabilityTest for Holding {
         _center_O: Option<Vec3>,
         _context: &mut Context<'_>,
     ) -> Result<Assessment, CallError> {
-        let judged = self.judge(grasp, None, &mut Hint::default())?;
+        let judged = self.judge(grasp)?;
         let stability = judged.stability;
         let mut most = self.smallest(&self.held(grasp, None, |_| 0.0)?, grasp);
         for drag in self.corners(grasp) {
@@ -343,7 +356,7 @@ impl StabilityTest for Holding {
         context: &mut Context<'_>,
     ) -> Result<bool, CallError> {
         context.count_call(Slot::StabilityTest);
-        Ok(self.judge(grasp, Some(finger), &mut Hint::default())?.stability.is_stable())
+        Ok(self.verdict(grasp, Some(finger), &mut Hint::default())?.is_stable())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Time of geodesics, of the paths of `surface/steiner`, projections and edge distances; each figure is the
 //! mean over 256 fixed inputs.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/it/common/mod.rs"]
 #[allow(unused)]
 mod common;
 

@@ -6,6 +6,7 @@ use super::newton::{Balanced, Forces, Search};
 use crate::force::Friction;
 use nalgebra::{Cholesky, Matrix6, Vector6};
 use regrasp_api::{FingerIndex, Grasp, Hint, MAX_FINGERS, Vec3};
+use std::ops::AddAssign;
 
 /// Vertices of the two icosahedra that enclose the disturbances.
 const VERTICES: usize = 24;
@@ -167,13 +168,15 @@ impl HeldLoad {
             return yes;
         }
         let Some(response) = search.response(forces) else { return Answer { holds: false, ..yes } };
+        let count = search.bearings.len();
         for vertex in icosahedron() {
-            let zero = Vec3::zeros();
-            for change in [stacked(&(vertex * force), &zero), stacked(&zero, &(vertex * torque))] {
-                if search.inside(&response.after(search, forces, &change)) {
+            for (column, push) in [(0, vertex * force), (3, vertex * torque)] {
+                if search.inside(&response.after(forces, count, column, &push)) {
                     continue;
                 }
-                match search.any(forces, &(wanted + change)) {
+                let mut wanted = *wanted;
+                wanted.fixed_rows_mut::<3>(column).add_assign(&push);
+                match search.any(forces, &wanted) {
                     Balanced::Yes(_) => {}
                     no => return Answer { balanced: no, holds: false },
                 }

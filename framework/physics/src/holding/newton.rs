@@ -4,8 +4,9 @@
 use super::barrier::{Barrier, Sums};
 use super::bearing::{Bearing, Exerted};
 use super::ldl::Ldl;
-use nalgebra::Vector6;
-use regrasp_api::MAX_FINGERS;
+use nalgebra::{SMatrix, Vector6};
+use regrasp_api::{MAX_FINGERS, Vec3};
+use std::cell::RefCell;
 
 /// The most Newton steps; about ten from the start, two or three from a centre nearby.
 const MAX_STEPS: usize = 60;
@@ -40,17 +41,15 @@ pub enum Balanced {
 
 /// The linear response of forces to a change of the load.
 pub(crate) struct Response {
-    square: Ldl<6>,
-    barriers: Barriers,
+    of_each: [SMatrix<f64, 4, 6>; MAX_FINGERS],
 }
 
 impl Response {
-    /// The forces after a change of what is wanted.
-    pub fn after(&self, search: &Search<'_>, forces: &Forces, change: &Vector6<f64>) -> Forces {
-        let multiplier = Vector6::from(self.square.solve((*change).into()));
+    /// The forces of `count` contacts after a push is wanted too: of forces from column 0, of torques from 3.
+    pub fn after(&self, forces: &Forces, count: usize, column: usize, push: &Vec3) -> Forces {
         let mut forces = *forces;
-        for (x, barrier) in forces.iter_mut().zip(&self.barriers).take(search.bearings.len()) {
-            *x += barrier.follow(&multiplier);
+        for (x, of) in forces.iter_mut().zip(&self.of_each).take(count) {
+            *x += of.fixed_columns::<3>(column) * push;
         }
         forces
     }
@@ -73,6 +72,11 @@ struct Step {
 
 /// The barriers of all contacts, where the last step left them.
 type Barriers = [Barrier; MAX_FINGERS];
+
+thread_local! {
+    /// Room for the barriers of a search: to fill five kilobytes anew took a tenth of one.
+    static BARRIERS: RefCell<Barriers> = const { RefCell::new([Barrier::NOTHING; MAX_FINGERS]) };
+}
 
 impl Search<'_> {
     /// Where searches begin: pressing along the normals.
@@ -107,9 +111,19 @@ impl Search<'_> {
 
     /// How forces follow a change of the wrench that is wanted, by H⁻¹Gᵀ(G H⁻¹Gᵀ)⁻¹.
     pub fn response(&self, forces: &Forces) -> Option<Response> {
-        let mut barriers = [Barrier::NOTHING; MAX_FINGERS];
-        let sums = self.sums(&mut barriers, forces, &Vector6::zeros())?;
-        Some(Response { square: Ldl::new(&sums.square)?, barriers })
+        BARRIERS.with_borrow_mut(|barriers| {
+            let sums = self.sums(barriers, forces, &Vector6::zeros())?;
+            let square = Ldl::new(&sums.square)?;
+            let mut response = Response { of_each: [SMatrix::zeros(); MAX_FINGERS] };
+            for k in 0..6 {
+                let mut unit = [0.0; 6];
+                unit[k] = 1.0;
+                let multiplier = Vector6::from(square.solve(unit));
+                let contacts = response.of_each.iter_mut().zip(barriers.iter()).take(self.bearings.len());
+                contacts.for_each(|(of, barrier)| of.set_column(k, &barrier.follow(&multiplier)));
+            }
+            Some(response)
+        })
     }
 
     /// The wrench that forces lack (force, torque over length).
@@ -123,14 +137,24 @@ impl Search<'_> {
     ///
     /// The Hessian is one block for each contact, since a finger's joints see its own contact alone: each
     /// step is one 6×6 system.
-    fn run(&self, mut forces: Forces, wanted: &Vector6<f64>, precision: f64) -> Balanced {
+    fn run(&self, forces: Forces, wanted: &Vector6<f64>, precision: f64) -> Balanced {
         if self.bearings.is_empty() {
             return if *wanted == Vector6::zeros() { Balanced::Yes(forces) } else { Balanced::Unknown };
         }
-        let (mut feasible, mut barriers) = (false, [Barrier::NOTHING; MAX_FINGERS]);
+        BARRIERS.with_borrow_mut(|barriers| self.run_in(barriers, forces, wanted, precision))
+    }
+
+    fn run_in(
+        &self,
+        barriers: &mut Barriers,
+        mut forces: Forces,
+        wanted: &Vector6<f64>,
+        precision: f64,
+    ) -> Balanced {
+        let mut feasible = false;
         for _ in 0..MAX_STEPS {
-            let Some(step) = self.step(&mut barriers, &forces, wanted) else { return Balanced::Unknown };
-            if !feasible && self.refutes(&barriers, &step, wanted) {
+            let Some(step) = self.step(barriers, &forces, wanted) else { return Balanced::Unknown };
+            if !feasible && self.refutes(barriers, &step, wanted) {
                 return Balanced::No(step.multiplier);
             }
             let t = self.advance(&mut forces, &step, feasible);
@@ -140,7 +164,7 @@ impl Search<'_> {
             }
             if t < SHORT
                 && !feasible
-                && let Some(proof) = self.recentre(&mut barriers, &mut forces, wanted)
+                && let Some(proof) = self.recentre(barriers, &mut forces, wanted)
             {
                 return Balanced::No(proof);
             }

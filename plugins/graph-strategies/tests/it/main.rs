@@ -1,0 +1,5 @@
+//! The strategies, seen from outside: one program, since each more is linked anew.
+#![allow(missing_docs)]
+
+mod conformance;
+mod strategies;

@@ -1,0 +1,5 @@
+//! The samplers, seen from outside: one program, since each more is linked anew.
+#![allow(missing_docs)]
+
+mod conformance;
+mod samplers;
