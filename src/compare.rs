@@ -20,7 +20,7 @@ use regrasp::api::Interrupt;
 use regrasp::host::Registry;
 use regrasp::run::scenario::{self, Scenario};
 use regrasp::study::compare::{
-    self, Change, Draft, Execution, Folder, Hypotheses, Pairs, RUN_THREAD, RunRecord, Seeds, Study,
+    self, Draft, Execution, Folder, Hypotheses, Level, Pairs, RUN_THREAD, RunRecord, Seeds, Study,
     VariantDraft,
 };
 use std::path::Path;
@@ -207,7 +207,7 @@ fn scenarios(args: &CompareArgs, registry: &Registry) -> Result<Vec<Scenario>, F
 
 fn variants(args: &CompareArgs, registry: &Registry) -> Result<Vec<VariantDraft>, Failure> {
     let factors = args.vary.iter().map(|text| vary::factor(text, registry));
-    let factors: Vec<Vec<Change>> = factors.collect::<Result<_, _>>()?;
+    let factors: Vec<Vec<Level>> = factors.collect::<Result<_, _>>()?;
     let count = factors.iter().try_fold(1usize, |count, factor| count.checked_mul(factor.len()));
     match count {
         Some(count) if count <= MOST_VARIANTS => Ok(compare::factorial(&factors)),

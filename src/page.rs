@@ -57,13 +57,14 @@ fn curves(plan: &Plan, figures: &[StateFigures]) -> StateCurves {
 pub fn graph(record: &GraphRecord, hand: &dyn Hand) -> GraphPicture {
     let ends = record.ends();
     let end = |node| ends.iter().find(|(_, other)| *other == node).map(|(end, _)| end_name(*end));
-    let nodes = record.nodes().iter().enumerate();
+    let nodes = record.nodes().iter().zip(record.grasp_components()).enumerate();
     GraphPicture {
         nodes: nodes
-            .map(|(index, q)| {
+            .map(|(index, (q, inside))| {
                 let node = NodeId(index as u32);
                 let component = record.component(node).0 as usize;
-                GraphNode { state: state_record(q, 0.0, hand), component, end: end(node) }
+                let state = state_record(q, 0.0, hand);
+                GraphNode { state, component, grasp_component: inside.0 as usize, end: end(node) }
             })
             .collect(),
         edges: record.edges().iter().map(graph_edge).collect(),

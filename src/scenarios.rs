@@ -33,7 +33,7 @@ fn described((name, scenario): &(&str, ScenarioFile)) -> Value {
 }
 
 fn print_file(name: &str) -> Result<(), Failure> {
-    if let Some(file) = scenario::find(SCENARIOS, name).or_else(|| scenario::find(HANDS, name)) {
+    if let Some(file) = scenario::find_scenario(name).or_else(|| scenario::find(HANDS, name)) {
         return say(file.text);
     }
     let names = SCENARIOS.iter().chain(HANDS).map(|file| file.name);

@@ -6,7 +6,8 @@ use regrasp::host::Registry;
 use regrasp::planner::{Clock, Silent};
 use regrasp::run::scenario;
 use regrasp::study::compare::{
-    Change, Draft, Execution, Folder, Machine, RUN_THREAD, RunStatus, Seeds, execute, factorial, prepare,
+    Change, Draft, Execution, Folder, Level, Machine, RUN_THREAD, RunStatus, Seeds, execute, factorial,
+    prepare,
 };
 use regrasp_example_plugins as _;
 use std::collections::BTreeMap;
@@ -40,7 +41,7 @@ fn with(clock: &(dyn Clock + Sync)) -> Execution<'_> {
     }
 }
 
-fn draft(factors: &[Vec<Change>]) -> Draft {
+fn draft(factors: &[Vec<Level>]) -> Draft {
     Draft {
         command: vec!["a test".into()],
         versions: BTreeMap::new(),
@@ -92,7 +93,8 @@ fn cells(line: &str) -> Vec<String> {
 fn figures_of_example_plugins_are_in_the_report() {
     let registry = Registry::linked().expect("the plugins differ");
     let scenarios = [scenario::load("sphere", &registry).expect("it is built in")];
-    let change = |slot, id: &str| Change { slot, id: Some(id.into()), settings: Default::default() };
+    let change =
+        |slot, id: &str| Level::Change(Change { slot, id: Some(id.into()), settings: Default::default() });
     let factors =
         [vec![change(Slot::TransferPlanner, "guarded")], vec![change(Slot::RegraspPlanner, "roadmap")]];
     let mut prepared = prepare(draft(&factors), &scenarios, &registry).expect("the plugins are linked");

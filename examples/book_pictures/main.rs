@@ -3,6 +3,7 @@
 //! `cargo run --release --example book_pictures [FOLDER]`
 
 mod charts;
+mod components;
 mod motions;
 mod problem;
 
@@ -47,6 +48,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     write("lift", motions::liftable(&ellipsoid)?)?;
     write("slide", motions::slide_and_roll(&ellipsoid)?)?;
     write("graph", charts::graph(&ellipsoid))?;
+    let explored = components::problems()?;
+    components::table(&explored)?;
+    write("components", components::picture(&explored, 0)?)?;
     // The hand with the TriFinger's kinematics, three times as large, is left out.
     let suite = SUITE.iter().map(|name| regrasp::load(name)).collect::<Result<Vec<_>, _>>()?;
     let suite = suite.iter().map(|scenario| Example::solve(scenario, 0)).collect::<Result<Vec<_>, _>>()?;

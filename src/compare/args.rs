@@ -20,7 +20,8 @@ and makes no run again. A run that fails, panics or takes too long is a row of t
 is one that ends its process, the \
 next time the same command is given, or at once with `--isolate`.\n\n\
 DIR gets `runs.csv` (a row a run), `summary.csv` and `summary.md` (figures over the seeds and what may be \
-said of them), `comparisons.csv` (a row a hypothesis, with its verdict), `report.html`, \
+said of them), `comparisons.csv` (a row a hypothesis, with its verdict), `search.md` (what the searches \
+did: nodes, components, paths, tests), `report.html`, \
 `ompl/` (logs for OMPL's tools and Planner Arena), `study.json` (all that is needed to repeat it), \
 `runs.jsonl` (the runs in full) and \
 `plans/` (for each scenario the baseline's plan with the first seed).\n\n\
@@ -28,19 +29,21 @@ Examples:\n  regrasp compare sphere cubic --vary stability-test=force-closure,so
 regrasp compare --suite paper --vary graph-strategy.end=0.3,0.5,0.8 --vary sampler=rlg,projection -o \
 alpha\n  \
 regrasp compare --suite paper --seeds 100 -o table1      # prints the paper's Table 1 beside ours\n  \
+regrasp compare --suite strict --vary preset=paper,default -o strict    # and in the paper's own meanings\n  \
 regrasp compare --study mine.toml -o study               # `regrasp schema study` says what may be in it\n  \
 regrasp compare --suite all --shard 2/8 -o part2         # the second of eight parts\n  \
 regrasp compare --merge part1 part2 part3 -o study")]
 pub struct CompareArgs {
     /// Scenario files, or names of built-in scenarios.
     pub scenarios: Vec<String>,
-    /// Add the paper's three problems, or every built-in scenario.
-    #[arg(long, value_name = "paper|all", value_parser = suite)]
+    /// Add the paper's three problems (`paper`), these with five pairs of given grasps each (`strict`), harder
+    /// ones after them (`harder`), or every built-in scenario (`all`).
+    #[arg(long, value_name = "paper|strict|harder|all", value_parser = suite)]
     pub suite: Option<Suite>,
     /// Take scenarios and variants from a study file.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scenarios", "suite", "vary"])]
     pub study: Option<PathBuf>,
-    /// Compare these plugins in a slot, `ID` or `ID{KEY=VALUE,…}`, or these values of a setting; can be
+    /// Compare these plugins in a slot, `ID` or `ID{KEY=VALUE,…}`, these values of a setting, or presets; can be
     /// repeated.
     #[arg(long, value_name = "SLOT[.KEY]=A,B…")]
     pub vary: Vec<String>,
@@ -158,7 +161,10 @@ impl CompareArgs {
 
 fn suite(text: &str) -> Result<Suite, String> {
     let named = |suite: &Suite| suite.name() == text;
-    Suite::ALL.into_iter().find(named).ok_or_else(|| "it must be `paper` or `all`".to_owned())
+    Suite::ALL
+        .into_iter()
+        .find(named)
+        .ok_or_else(|| "it must be `paper`, `strict`, `harder` or `all`".to_owned())
 }
 
 fn pairs(text: &str) -> Result<Pairs, String> {

@@ -12,11 +12,16 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// A row for each scenario and variant, then what may be said; where nothing is compared but with what was
-/// published, the paper's table.
+/// published, the paper's table; where scenarios are instances of one problem, the paper's table in its own
+/// meanings.
 pub fn text(study: &Study, records: &[RunRecord]) -> String {
     let rows = compare::analyse(study, records);
     let family = compare::judge_all(study, &rows);
     let published = study.scenarios.iter().any(|scenario| scenario.paper.is_some());
+    if compare::has_families(&rows) {
+        let said: String = rows.iter().enumerate().map(|(k, row)| said(study, k, row, &family)).collect();
+        return searches(&rows) + &said + &stated(study, &family) + &left_out(study);
+    }
     if study.variants.len() == 1 && published {
         return paper(rows.into_iter().flatten().collect()) + &left_out(study);
     }
@@ -41,6 +46,13 @@ fn stated(study: &Study, family: &Family) -> String {
 
 fn quoted(name: &str) -> String {
     format!("`{name}`")
+}
+
+/// What the searches did, problem by problem, the paper's row first.
+fn searches(rows: &[Vec<Cell<'_>>]) -> String {
+    let mut table = Table::new("<<>", &compare::search_head());
+    compare::search_lines(rows).into_iter().for_each(|line| table.row(line));
+    format!("{}  means (medians) over the runs that were solved and verified\n", table.text())
 }
 
 fn paper(cells: Vec<Cell<'_>>) -> String {

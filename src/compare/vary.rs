@@ -3,16 +3,26 @@
 use crate::Failure;
 use crate::overrides::{parse, refuse, split_slot};
 use regrasp::api::Slot;
-use regrasp::host::{Registry, slot_by_name};
-use regrasp::study::compare::Change;
+use regrasp::host::{Registry, preset, slot_by_name};
+use regrasp::study::compare::{Change, Level, PRESET};
 use serde_json::{Map, Value};
 
-/// The levels of `SLOT=ID,ID…`, of `SLOT=ID{KEY=VALUE,…},…`, or of `SLOT.KEY=VALUE,VALUE…`.
-pub fn factor(text: &str, registry: &Registry) -> Result<Vec<Change>, Failure> {
+/// The levels of `SLOT=ID,ID…`, of `SLOT=ID{KEY=VALUE,…},…`, of `SLOT.KEY=VALUE,VALUE…`, or of
+/// `preset=NAME,NAME…`.
+pub fn factor(text: &str, registry: &Registry) -> Result<Vec<Level>, Failure> {
+    if let Some((PRESET, list)) = text.split_once('=') {
+        let named = |name: &str| preset(name.trim()).map_err(|error| refuse("vary", text, &error));
+        return list.split(',').map(|name| named(name).map(Level::Preset)).collect();
+    }
+    Ok(changes(text, registry)?.into_iter().map(Level::Change).collect())
+}
+
+/// The levels of one slot.
+fn changes(text: &str, registry: &Registry) -> Result<Vec<Change>, Failure> {
     let form = || {
         Failure::bad_input(format!(
-            "`--vary {text}` is not of the form SLOT=ID,ID…, SLOT=ID{{KEY=VALUE}},… or \
-             SLOT.KEY=VALUE,VALUE…, such as sampler=rlg,projection"
+            "`--vary {text}` is not of the form SLOT=ID,ID…, SLOT=ID{{KEY=VALUE}},…, \
+             SLOT.KEY=VALUE,VALUE… or preset=NAME,NAME…, such as sampler=rlg,projection"
         ))
     };
     let (path, list) = text.split_once('=').ok_or_else(form)?;
@@ -93,10 +103,10 @@ mod tests {
 
     #[test]
     fn plugins_and_settings_are_told_apart() {
-        let plugins = factor("local-planner.regrasp=rrt,lift-slide-touch", &registry()).unwrap();
+        let plugins = changes("local-planner.regrasp=rrt,lift-slide-touch", &registry()).unwrap();
         assert_eq!(plugins.len(), 2);
         assert_eq!((plugins[0].slot, plugins[0].id.as_deref()), (Slot::RegraspPlanner, Some("rrt")));
-        let settings = factor("graph-strategy.end=0.3,0.8", &registry()).unwrap();
+        let settings = changes("graph-strategy.end=0.3,0.8", &registry()).unwrap();
         assert_eq!(settings[1].settings, *json!({"end": 0.8}).as_object().unwrap());
         assert_eq!(settings[1].label(), "end=0.8");
     }
@@ -104,13 +114,23 @@ mod tests {
     #[test]
     fn a_variant_may_bring_settings_of_its_own() {
         let text = "graph-strategy=interleaved{start=0.2,end=1.0},lazy,interleaved{growth=2.0}";
-        let levels = factor(text, &registry()).unwrap();
+        let levels = changes(text, &registry()).unwrap();
         assert_eq!(levels[0].settings, *json!({"start": 0.2, "end": 1.0}).as_object().unwrap());
         assert!(levels[1].settings.is_empty());
         assert_eq!(levels[2].label(), "interleaved growth=2.0");
         for bad in ["graph-strategy=lazy{", "graph-strategy={a=1}", "graph-strategy=lazy{a}"] {
             assert!(factor(bad, &registry()).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn presets_are_levels_too() {
+        let levels = factor("preset=paper, default", &registry()).unwrap();
+        let name = |level: &Level| match level {
+            Level::Preset(preset) => preset.name,
+            Level::Change(_) => "",
+        };
+        assert_eq!(levels.iter().map(name).collect::<Vec<_>>(), ["paper", "default"]);
     }
 
     #[test]
@@ -130,6 +150,7 @@ mod tests {
             ("sampler", "is not of the form"),
             ("local-planner=rrt", "local-planner.regrasp"),
             ("sampler.tries=", "a value is missing"),
+            ("preset=papre,default", "did you mean `paper`"),
         ] {
             let failure = format!("{:?}", factor(text, &registry()).unwrap_err());
             assert!(failure.contains(hint), "{text}: {failure}");

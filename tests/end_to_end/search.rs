@@ -10,10 +10,9 @@ fn without_times(plan: &str) -> Value {
     plan
 }
 
-/// A scenario of the strict suite as the repository has it.
+/// A scenario of the strict suite.
 fn strict(name: &str) -> String {
-    let path = format!("{}/studies/strict/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(path).expect("the repository has the strict suite")
+    regrasp::run::scenario::find_scenario(name).expect("it is built in").text.to_owned()
 }
 
 #[test]

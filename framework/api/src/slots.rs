@@ -26,8 +26,8 @@ macro_rules! with_roles {
 /// Hands the table of the slots to the macro `$then`: `[variant, field, trait] (role, id, plugin by default,
 /// what it is for)`.
 ///
-/// The defaults are the paper's: its section IV, "Planning algorithm", names rolling transfers, the random
-/// loop generator, RRT for regrasps and the biased α.
+/// The defaults are what the paper names in section IV, "Planning algorithm": rolling transfers, the random
+/// loop generator, RRT for regrasps, the biased α. `surface` alone is not: the paper's is `steiner`.
 #[macro_export]
 macro_rules! with_slots {
     ($then:ident) => {

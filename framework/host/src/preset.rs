@@ -3,9 +3,10 @@
 use crate::{Choices, HostError};
 use regrasp_api::{Slot, near};
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 /// A named set of plugins and settings.
-#[derive(Debug)]
+#[derive(Debug, PartialEq, Eq)]
 pub struct Preset {
     /// Its name.
     pub name: &'static str,
@@ -16,7 +17,7 @@ pub struct Preset {
 }
 
 /// One thing that a preset sets.
-#[derive(Debug)]
+#[derive(Debug, PartialEq, Eq)]
 pub struct PresetLine {
     /// The slot.
     pub slot: Slot,
@@ -112,6 +113,11 @@ pub fn preset(name: &str) -> Result<&'static Preset, HostError> {
 }
 
 impl Preset {
+    /// The slots that a preset, this one or another, fills or sets: those in which two of them can differ.
+    pub fn slots() -> BTreeSet<Slot> {
+        PRESETS.iter().flat_map(|preset| preset.lines).map(|line| line.slot).collect()
+    }
+
     /// Sets what the preset sets, over whatever is chosen; first what the other presets set goes back to the
     /// defaults.
     pub fn apply(&self, choices: &mut Choices) {

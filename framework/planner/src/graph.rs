@@ -190,14 +190,21 @@ impl Graph {
 
     /// The components of the nodes by paths in GS_n alone: how many, and how many nodes the largest has.
     pub fn grasp_components(&self) -> (usize, usize) {
+        let mut sizes: BTreeMap<ComponentId, usize> = BTreeMap::new();
+        for component in self.grasp_labels() {
+            *sizes.entry(component).or_default() += 1;
+        }
+        (sizes.len(), sizes.into_values().max().unwrap_or(0))
+    }
+
+    /// For each node its component by paths in GS_n alone: the smallest number of a node in it.
+    pub fn grasp_labels(&self) -> Vec<ComponentId> {
         let mut inside = Self::new(self.turn_length);
         inside.component = self.ids().map(|node| ComponentId(node.0)).collect();
-        inside.components = inside.component.clone();
         for edge in self.edges.iter().filter(|edge| edge.kind == EdgeKind::Grasp) {
             inside.merge(edge.from, edge.to);
         }
-        let size = |id: &ComponentId| inside.component.iter().filter(|other| *other == id).count();
-        (inside.components.len(), inside.components.iter().map(size).max().unwrap_or(0))
+        inside.component
     }
 
     fn merge(&mut self, a: NodeId, b: NodeId) {
@@ -280,6 +287,7 @@ mod tests {
         let far = graph.add_node(at(9.0), Origin::Explored);
         graph.add_edge(NodeId(0), far, EdgeKind::TransferRegrasp, EdgeVerdict::Executable);
         assert_eq!((graph.components().len(), graph.grasp_components()), (1, (2, 3)));
+        assert_eq!(graph.grasp_labels(), [0, 0, 0, 3].map(ComponentId));
     }
 
     #[test]

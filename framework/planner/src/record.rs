@@ -58,6 +58,11 @@ impl GraphRecord {
         self.graph.component(node)
     }
 
+    /// For each node its component by paths in GS_n alone: the smallest number of a node in it.
+    pub fn grasp_components(&self) -> Vec<ComponentId> {
+        self.graph.grasp_labels()
+    }
+
     /// The nodes that were made for start and goals, in the order in which they were.
     pub fn ends(&self) -> &[(End, NodeId)] {
         &self.ends

@@ -14,6 +14,18 @@ const FATES = [
     ["used", "used", true],
 ];
 
+/** How two grasps can be joined; each is a layer of its own. */
+const KINDS = [
+    ["grasp", "paths in GS_n"],
+    ["transfer-regrasp", "transfers and regrasps"],
+];
+
+/** What decides where a grasp is drawn, and how many numbers of its feature that takes. */
+const PLACES = [
+    ["pose", "the object's pose", 6],
+    ["orientation", "its orientation, SO(3)", 3],
+];
+
 /** Up to so many nodes push each other apart until they can be told apart. */
 const MOST_RELAXED = 600;
 
@@ -24,11 +36,24 @@ export class GraphTab {
         this.states = new States(data.graph.states, app.motion.hand);
         this.count = this.states.count;
         this.bodyRadius = data.object.vertices.reduce((most, x) => Math.max(most, Math.abs(x)), 1e-6);
-        this.places = layout(this.states, this.graph.edges, data);
+        this.data = data;
+        this.parts = bySize(this.graph.grasp_components);
+        this.places = layout(this.states, this.graph.edges, data, PLACES[0][2]);
         this.size = Math.min(16, 220 / Math.sqrt(this.count + 1));
         this.details = element("p", { class: "node-details", "aria-live": "polite" });
-        parent.append(element("p", { class: "summary", text: this.summary() }), this.legend(), this.picture(), this.details);
+        this.hidden = new Set(FATES.filter(([, , shown]) => !shown).map(([fate]) => fate));
+        this.svg = this.picture();
+        parent.append(element("p", { class: "summary", text: this.summary() }), this.legend(), this.svg, this.details);
         this.describe(null);
+    }
+
+    /** Draws the graph anew, each grasp at its place by so many numbers of its feature. */
+    place(numbers) {
+        this.release();
+        this.places = layout(this.states, this.graph.edges, this.data, numbers);
+        const old = this.svg;
+        this.svg = this.picture();
+        old.replaceWith(this.svg);
     }
 
     summary() {
@@ -36,33 +61,56 @@ export class GraphTab {
         const tried = this.graph.edges.length;
         const failed = this.graph.edges.filter((edge) => edge.fate === "failed").length;
         const plural = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
-        return `${plural(this.count, "grasp")} in ${plural(components, "component")}; ${plural(tried, "edge")} tried, ${failed} failed. Seen from above; a dot is a finger, the line shows how the object is turned.`;
+        const largest = this.parts[0]?.size ?? 0;
+        const inside = `by paths in GS_n alone in ${plural(this.parts.length, "component")}, the largest of ${largest}, each in its colour`;
+        return `${plural(this.count, "grasp")} in ${plural(components, "component")}, ${inside}; ${plural(tried, "edge")} tried, ${failed} failed. Seen from above; a dot is a finger, the line shows how the object is turned.`;
     }
 
     legend() {
-        const items = FATES.filter(([fate]) => this.graph.edges.some((edge) => edge.fate === fate)).map(([fate, name, shown]) => {
-            const count = this.graph.edges.filter((edge) => edge.fate === fate).length;
-            const box = element("input", { type: "checkbox", onchange: () => this.layers[fate].classList.toggle("off", !box.checked) });
-            box.checked = shown;
-            return element("label", { class: `fate ${fate}` }, box, element("i"), element("span", { text: `${name} (${count})` }));
-        });
-        return element("div", { class: "legend" }, ...items);
+        const box = (name, layer, count, look) => {
+            const input = element("input", { type: "checkbox", onchange: () => this.toggle(layer, !input.checked) });
+            input.checked = !this.hidden.has(layer);
+            return element("label", { class: `fate ${look}` }, input, element("i"), element("span", { text: `${name} (${count})` }));
+        };
+        const number = (key, value) => this.graph.edges.filter((edge) => edge[key] === value).length;
+        const fates = FATES.filter(([fate]) => number("fate", fate)).map(([fate, name]) => box(name, fate, number("fate", fate), fate));
+        const kinds = KINDS.filter(([kind]) => number("kind", kind)).map(([kind, name]) => box(name, kind, number("kind", kind), `kind ${kind}`));
+        const choice = element("select", { onchange: () => this.place(PLACES[choice.selectedIndex][2]) });
+        choice.append(...PLACES.map(([value, name]) => element("option", { value, text: name })));
+        const places = element("label", {}, element("span", { text: "Placed by" }), choice);
+        return element("div", { class: "legend" }, ...fates, ...kinds, places);
+    }
+
+    /** Hides or shows all edges of a fate or a kind. */
+    toggle(layer, hide) {
+        if (hide) this.hidden.add(layer);
+        else this.hidden.delete(layer);
+        this.hide();
+    }
+
+    hide() {
+        for (const [name, layers] of Object.entries(this.layers)) {
+            layers.forEach((layer) => layer.classList.toggle("off", this.hidden.has(name)));
+        }
     }
 
     picture() {
         const root = drawing("g");
-        this.layers = {};
-        for (const [fate, , shown] of FATES) {
+        this.layers = Object.fromEntries([...FATES, ...KINDS].map(([name]) => [name, []]));
+        for (const [fate] of FATES) {
             const layer = drawing("g", { class: `edges ${fate}` });
-            for (const kind of ["grasp", "transfer-regrasp"]) {
+            this.layers[fate].push(layer);
+            for (const [kind] of KINDS) {
                 const chosen = this.graph.edges.filter((edge) => edge.fate === fate && edge.kind === kind);
                 const d = chosen.map((edge) => `M${this.spot(edge.from)}L${this.spot(edge.to)}`).join("");
-                if (d) layer.append(drawing("path", { d, class: kind }));
+                if (!d) continue;
+                const path = drawing("path", { d, class: kind });
+                this.layers[kind].push(path);
+                layer.append(path);
             }
-            layer.classList.toggle("off", !shown);
-            this.layers[fate] = layer;
             root.append(layer);
         }
+        this.hide();
         this.nodes = this.places.map((_, node) => this.node(node));
         root.append(...this.nodes);
         const svg = drawing("svg", { class: "graph", viewBox: this.box(), role: "group", "aria-label": "Manipulation graph" });
@@ -90,8 +138,10 @@ export class GraphTab {
         const r = this.size;
         const end = this.graph.ends[node];
         const kind = end ? (end === "start" ? "start" : "goal") : "";
-        const attributes = { class: `node ${kind}`, transform: `translate(${this.spot(node)})`, tabindex: 0, role: "button", "aria-label": this.label(node) };
-        const group = drawing("g", attributes, drawing("circle", { r, class: "disc", style: `--hue:${(this.graph.components[node] * 137.5) % 360}` }));
+        const part = this.parts.findIndex((part) => part.name === this.graph.grasp_components[node]);
+        const alone = this.parts[part].size === 1 ? "alone" : "";
+        const attributes = { class: `node ${kind} ${alone}`, transform: `translate(${this.spot(node)})`, tabindex: 0, role: "button", "aria-label": this.label(node) };
+        const group = drawing("g", attributes, drawing("circle", { r, class: "disc", style: `--hue:${(210 + part * 137.5) % 360}` }));
         const pose = this.states.object(node);
         const turn = rotate(pose.q, [1, 0, 0]);
         group.append(drawing("line", { x1: 0, y1: 0, x2: turn[0] * r * 0.8, y2: -turn[1] * r * 0.8, class: "turn" }));
@@ -150,7 +200,7 @@ export class GraphTab {
         const counts = FATES.map(([fate, name]) => [own.filter((edge) => edge.fate === fate).length, name]).filter(([n]) => n);
         const edges = counts.map(([n, name]) => `${n} ${name}`).join(", ") || "none";
         const turned = (angleBetween(this.states.object(0).q, this.states.object(node).q) * 180) / Math.PI;
-        this.details.textContent = `${this.label(node)}; component ${this.graph.components[node]}; object ${turned.toFixed(0)}° from grasp 0; edges: ${edges}.`;
+        this.details.textContent = `${this.label(node)}; component ${this.graph.components[node]}, in GS_n alone ${this.graph.grasp_components[node]}; object ${turned.toFixed(0)}° from grasp 0; edges: ${edges}.`;
     }
 
     /** Goes back to where the play head is. */
@@ -175,11 +225,18 @@ export class GraphTab {
     }
 }
 
-/** Where the nodes are drawn: their two widest directions in the space of object poses, then pushed apart. */
-function layout(states, edges, data) {
+/** The components that these names of each node make, the largest first. */
+function bySize(names) {
+    const sizes = new Map();
+    for (const name of names) sizes.set(name, (sizes.get(name) ?? 0) + 1);
+    return [...sizes].map(([name, size]) => ({ name, size })).sort((a, b) => b.size - a.size || a.name - b.name);
+}
+
+/** Where the nodes are drawn: their two widest directions in the space of the first `numbers` of their features, then pushed apart. */
+function layout(states, edges, data, numbers) {
     const count = states.count;
     if (!count) return [];
-    const features = Array.from({ length: count }, (_, k) => feature(states, k, data));
+    const features = Array.from({ length: count }, (_, k) => feature(states, k, data).slice(0, numbers));
     const plane = principal(features);
     // Each direction fills its share of the picture, however much less than the other it varies.
     const wide = [0, 1].map((i) => Math.max(...plane.map((place) => Math.abs(place[i])), 1e-9));

@@ -61,6 +61,8 @@ struct GripData<'a> {
 struct GraphData<'a> {
     states: StatesData,
     components: Vec<usize>,
+    /// The same by paths in GS_n alone.
+    grasp_components: Vec<usize>,
     ends: Vec<Option<&'a str>>,
     edges: &'a [GraphEdge],
 }
@@ -189,6 +191,7 @@ fn graph_data<'a>(graph: &'a GraphPicture, hand: &ChainHand) -> Result<GraphData
     Ok(GraphData {
         states,
         components: graph.nodes.iter().map(|node| node.component).collect(),
+        grasp_components: graph.nodes.iter().map(|node| node.grasp_component).collect(),
         ends: graph.nodes.iter().map(|node| node.end.as_deref()).collect(),
         edges: &graph.edges,
     })

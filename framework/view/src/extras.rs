@@ -100,6 +100,8 @@ pub struct GraphNode {
     pub state: regrasp_plan::StateRecord,
     /// The component that it belongs to.
     pub component: usize,
+    /// The component that it belongs to by paths in GS_n alone.
+    pub grasp_component: usize,
     /// `start`, or the goal that it was made for, such as `goal 1`; absent for all others.
     pub end: Option<String>,
 }

@@ -33,7 +33,8 @@ pub struct InterleavedSettings {
     #[schemars(range(min = 0.1, max = 1e6), extend("x-unit" = "1"))]
     pub growth: f64,
     /// Whether the start is tried to be joined to each goal by transfers and regrasps before anything else.
-    /// The paper builds the graph alone (Algorithm 1).
+    /// In the paper both are in the graph from the first line on, and nothing goes before the search
+    /// (Algorithm 1, lines 1 and 2).
     pub first_try: bool,
     /// How often, before even that, a relay is tried: rolls towards the goal, each as far as it goes, and
     /// between them regrasps of those fingers alone that bar the way. With `first_try` alone; 0 means never.

@@ -3,6 +3,7 @@
 mod family;
 mod kill;
 mod parts;
+mod presets;
 mod rows;
 mod shelf;
 mod words;

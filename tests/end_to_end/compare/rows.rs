@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// The rows of `runs.csv` as maps from the column's name.
-fn rows(desk: &Desk, folder: &str) -> Vec<BTreeMap<String, String>> {
+pub fn rows(desk: &Desk, folder: &str) -> Vec<BTreeMap<String, String>> {
     let mut rows = csv(&desk.read(&format!("{folder}/runs.csv")));
     let head = rows.remove(0);
     rows.into_iter().map(|row| head.iter().cloned().zip(row).collect()).collect()

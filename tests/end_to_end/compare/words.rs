@@ -29,7 +29,7 @@ fn bad_input_is_refused_before_any_work() {
     refused("sphere --threads 0 -o out", &["--threads <N>", "1..="]);
     refused("sphere --time-limit 0 -o out", &["--time-limit <S>", "0.001"]);
     refused("sphere --shard 3/2 -o out", &["I/N with I in 1..=N"]);
-    refused("sphere --suite papers -o out", &["`paper` or `all`"]);
+    refused("sphere --suite papers -o out", &["`paper`, `strict`, `harder` or `all`"]);
     refused("sphere --study file -o out", &["cannot be used with"]);
     refused("sphere --merge a -o out", &["cannot be used with"]);
     refused("sphere --load file -o out", &["`file`"]);

@@ -27,15 +27,32 @@ pub const SCENARIOS: &[BuiltIn] = built_in!(
     "rgmc-a1-60", "rgmc-a1-80", "rgmc-a1-100", "rgmc-b1",
 );
 
+/// The paper's three problems with q_init and q_goal given, five pairs each: what the suite `strict` plans.
+pub const STRICT: &[BuiltIn] = built_in!(
+    "strict/": "sphere-given-1", "sphere-given-2", "sphere-given-3", "sphere-given-4", "sphere-given-5",
+    "cubic-given-1", "cubic-given-2", "cubic-given-3", "cubic-given-4", "cubic-given-5", "ellip-obst-given-1",
+    "ellip-obst-given-2", "ellip-obst-given-3", "ellip-obst-given-4", "ellip-obst-given-5",
+);
+
+/// The paper's problems made harder: what the suite `harder` plans.
+pub const HARDER: &[BuiltIn] = built_in!(
+    "strict/": "cubic-friction-0.4", "cubic-friction-0.3", "cube-180", "ellip-two-bars", "narrow-abduction",
+);
+
 /// The hands.
 pub const HANDS: &[BuiltIn] = built_in!(
     "hands/": "four-finger", "five-finger", "three-finger", "free-fingertips", "free-points", "box-points",
-    "box-tips", "allegro-like", "trifinger-like",
+    "box-tips", "narrow", "allegro-like", "trifinger-like",
 );
 
 /// The built-in file with this name.
 pub fn find(files: &'static [BuiltIn], name: &str) -> Option<&'static BuiltIn> {
     files.iter().find(|file| file.name == name)
+}
+
+/// The built-in scenario with this name, those of the suites included.
+pub fn find_scenario(name: &str) -> Option<&'static BuiltIn> {
+    [SCENARIOS, STRICT, HARDER].into_iter().find_map(|files| find(files, name))
 }
 
 impl BuiltIn {

@@ -100,7 +100,7 @@ fn with_text(
     name: &str,
     read_text: impl Fn(&str, &str, &Path) -> Result<Scenario, ScenarioError>,
 ) -> Result<Scenario, ScenarioError> {
-    if let Some(built_in) = find(SCENARIOS, name) {
+    if let Some(built_in) = find_scenario(name) {
         return read_text(built_in.name, built_in.text, Path::new(""));
     }
     let path = Path::new(name);
@@ -200,7 +200,7 @@ fn with_hint(error: ScenarioError, path: &Path) -> ScenarioError {
         return ScenarioError::Unreadable { place, cause };
     }
     let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-    let hint = match find(SCENARIOS, stem) {
+    let hint = match find_scenario(stem) {
         Some(_) => format!("the built-in scenario is called `{stem}`"),
         None => "`scenarios sphere` prints a built-in one to start from".to_owned(),
     };

@@ -46,6 +46,18 @@ fn every_built_in_scenario_loads_under_its_own_name_with_its_source() {
 }
 
 #[test]
+fn the_suites_are_built_in_and_those_called_given_have_grasps_at_both_ends() {
+    for built_in in STRICT.iter().chain(HARDER) {
+        let scenario = load(built_in.name, &registry()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(scenario.name, built_in.name);
+        assert_eq!(scenario.problem.limits.budget.max_nodes, 20_000);
+        assert_eq!(scenario.paper.is_some(), built_in.name.contains("-given-"));
+        let given = scenario.problem.start.grasp.is_some() && scenario.problem.goal[0].grasp.is_some();
+        assert_eq!(given, built_in.name.contains("-given-"));
+    }
+}
+
+#[test]
 fn every_built_in_hand_is_accepted() {
     for hand in HANDS {
         let changed = format!("builtin = \"{}\"", hand.name);
@@ -56,7 +68,9 @@ fn every_built_in_hand_is_accepted() {
 #[test]
 fn every_scenario_file_in_the_folder_is_built_in() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
-    for (folder, files) in [(folder.clone(), SCENARIOS), (folder.join("hands"), HANDS)] {
+    let suites = [STRICT, HARDER].concat();
+    let places = [("", SCENARIOS), ("strict", &suites), ("hands", HANDS)];
+    for (folder, files) in places.map(|(name, files)| (folder.join(name), files)) {
         let mut found: Vec<String> = fs::read_dir(folder)
             .unwrap()
             .filter_map(|entry| entry.unwrap().file_name().to_str()?.strip_suffix(".toml").map(str::to_owned))

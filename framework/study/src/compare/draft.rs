@@ -4,7 +4,7 @@
 use super::{Hypotheses, LeftOut, Machine, RunKey, Seeds, Shard, Study, StudyFormat, StudyScenario, Variant};
 use super::{STUDY_VERSION, StudyError};
 use regrasp_api::Slot;
-use regrasp_host::{Choices, HostError, Registry};
+use regrasp_host::{Choices, HostError, Preset, Registry};
 use regrasp_plan::PluginChoice;
 use regrasp_run::scenario::Scenario;
 use regrasp_run::{RunError, Setup};
@@ -40,29 +40,49 @@ impl Change {
     }
 }
 
-/// A variant that is asked for.
+/// One level of a factor.
 #[derive(Clone, Debug, PartialEq)]
+pub enum Level {
+    /// A preset as a whole.
+    Preset(&'static Preset),
+    /// A change in one slot.
+    Change(Change),
+}
+
+/// A variant that is asked for.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct VariantDraft {
     /// Its name.
     pub name: String,
-    /// What it changes.
+    /// The presets that it begins with; more than one are refused.
+    pub presets: Vec<&'static Preset>,
+    /// What it changes after that.
     pub changes: Vec<Change>,
 }
 
 impl VariantDraft {
-    /// The variant with these changes, named after them.
-    fn of_changes(changes: Vec<Change>) -> Self {
-        let mut ordered: Vec<&Change> = changes.iter().collect();
+    /// The variant with these levels, named after them.
+    fn of_levels(levels: Vec<Level>) -> Self {
+        let mut variant = Self::default();
+        for level in levels {
+            match level {
+                Level::Preset(preset) => variant.presets.push(preset),
+                Level::Change(change) => variant.changes.push(change),
+            }
+        }
+        let mut ordered: Vec<&Change> = variant.changes.iter().collect();
         ordered.sort_by_key(|change| change.slot);
-        let labels: Vec<String> = ordered.iter().map(|change| change.label()).collect();
-        let name = if labels.is_empty() { "base".to_owned() } else { labels.join(" + ") };
-        Self { name, changes }
+        let presets = variant.presets.iter().map(|preset| preset.name.to_owned());
+        let labels: Vec<String> = presets.chain(ordered.iter().map(|change| change.label())).collect();
+        variant.name = if labels.is_empty() { "base".to_owned() } else { labels.join(" + ") };
+        variant
     }
 
-    /// The choices of a scenario with the changes; plugins before settings, in whatever order they were
-    /// given.
+    /// The choices of a scenario with the changes: the preset first, then plugins before settings, in
+    /// whatever order they were given.
     fn choices(&self, base: &Choices) -> Choices {
         let mut choices = base.clone();
+        self.presets.iter().for_each(|preset| preset.apply(&mut choices));
         let (plugins, settings): (Vec<&Change>, Vec<&Change>) =
             self.changes.iter().partition(|change| change.id.is_some());
         plugins.into_iter().chain(settings).for_each(|change| change.apply(&mut choices));
@@ -71,26 +91,30 @@ impl VariantDraft {
 
     fn variant(&self) -> Variant {
         let mut levels: BTreeMap<Slot, String> = BTreeMap::new();
-        for change in &self.changes {
-            let level = levels.entry(change.slot).or_default();
+        let mut add = |slot: Slot, label: &str| {
+            let level = levels.entry(slot).or_default();
             let space = if level.is_empty() { "" } else { " " };
-            *level += &format!("{space}{}", change.label());
+            *level += &format!("{space}{label}");
+        };
+        for preset in &self.presets {
+            Preset::slots().into_iter().for_each(|slot| add(slot, preset.name));
         }
+        self.changes.iter().for_each(|change| add(change.slot, &change.label()));
         Variant { name: self.name.clone(), levels }
     }
 }
 
-/// The full factorial: a variant for every way to take one change from each factor. The first takes the first
-/// of each: the baseline.
-pub fn factorial(factors: &[Vec<Change>]) -> Vec<VariantDraft> {
-    let mut combinations: Vec<Vec<Change>> = vec![Vec::new()];
+/// The full factorial: a variant for every way to take one level of each factor. The first takes the first of
+/// each: the baseline.
+pub fn factorial(factors: &[Vec<Level>]) -> Vec<VariantDraft> {
+    let mut combinations: Vec<Vec<Level>> = vec![Vec::new()];
     for factor in factors {
-        let with = |changes: &Vec<Change>| -> Vec<Vec<Change>> {
-            factor.iter().map(|change| [changes.as_slice(), std::slice::from_ref(change)].concat()).collect()
+        let with = |levels: &Vec<Level>| -> Vec<Vec<Level>> {
+            factor.iter().map(|level| [levels.as_slice(), std::slice::from_ref(level)].concat()).collect()
         };
         combinations = combinations.iter().flat_map(with).collect();
     }
-    combinations.into_iter().map(VariantDraft::of_changes).collect()
+    combinations.into_iter().map(VariantDraft::of_levels).collect()
 }
 
 /// A study that is asked for.
@@ -185,18 +209,28 @@ fn check_names(draft: &Draft, scenarios: &[Scenario]) -> Result<(), StudyError> 
         return Err(StudyError::DoubleVariant { name });
     }
     for variant in &draft.variants {
-        let slots = variant.changes.iter().filter(|change| change.id.is_some());
-        if let Some(slot) = double(slots.map(|change| change.slot.name()).collect()) {
+        let filled = variant.changes.iter().filter(|change| change.id.is_some());
+        let filled = filled.map(|change| change.slot.name());
+        // A preset counts as one more place that can be filled once.
+        let presets = variant.presets.iter().map(|_| PRESET);
+        if let Some(slot) = double(presets.chain(filled).collect()) {
             return Err(StudyError::TwoPlugins { variant: variant.name.clone(), slot });
         }
     }
     Ok(())
 }
 
+/// The word that takes the place of a slot where presets are varied.
+pub const PRESET: &str = "preset";
+
 /// The slots that variants fill by themselves.
 fn varied(variants: &[VariantDraft]) -> Vec<Slot> {
-    let slots = variants.iter().flat_map(|variant| &variant.changes).map(|change| change.slot);
-    slots.collect::<BTreeSet<_>>().into_iter().collect()
+    let changed = variants.iter().flat_map(|variant| &variant.changes).map(|change| change.slot);
+    let mut slots: BTreeSet<Slot> = changed.collect();
+    if variants.iter().any(|variant| !variant.presets.is_empty()) {
+        slots.extend(Preset::slots());
+    }
+    slots.into_iter().collect()
 }
 
 /// A variant's plugins for a scenario; `Ok(Err(_))` where the pair is left out.
@@ -250,9 +284,9 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    fn change(slot: Slot, id: Option<&str>, settings: Value) -> Change {
+    fn change(slot: Slot, id: Option<&str>, settings: Value) -> Level {
         let settings = settings.as_object().cloned().unwrap_or_default();
-        Change { slot, id: id.map(str::to_owned), settings }
+        Level::Change(Change { slot, id: id.map(str::to_owned), settings })
     }
 
     #[test]
@@ -283,10 +317,36 @@ mod tests {
     fn plugins_are_chosen_before_their_settings_are_set() {
         let settings = change(Slot::Sampler, None, json!({"tries": 3}));
         let plugin = change(Slot::Sampler, Some("projection"), json!({}));
-        let variant = VariantDraft::of_changes(vec![settings, plugin]);
+        let variant = VariantDraft::of_levels(vec![settings, plugin]);
         let choices = variant.choices(&Choices::default());
         let choice = choices.choice(Slot::Sampler);
         assert_eq!((choice.id.as_str(), &choice.settings["tries"]), ("projection", &json!(3)));
         assert_eq!(variant.variant().levels[&Slot::Sampler], "tries=3 projection");
+    }
+
+    #[test]
+    fn a_preset_comes_first_and_what_is_varied_besides_wins() {
+        let preset = |name| Level::Preset(regrasp_host::preset(name).unwrap());
+        let factors = [
+            vec![change(Slot::Sampler, Some("projection"), json!({}))],
+            vec![preset("paper"), preset("default")],
+        ];
+        let variants = factorial(&factors);
+        let names: Vec<&str> = variants.iter().map(|variant| variant.name.as_str()).collect();
+        assert_eq!(names, ["paper + projection", "default + projection"]);
+        let choices = variants[0].choices(&Choices::default());
+        assert_eq!(choices.choice(Slot::Surface).id, "surface/steiner");
+        let sampler = choices.choice(Slot::Sampler);
+        assert!(sampler.id == "projection" && sampler.settings.is_empty(), "{sampler:?}");
+        assert_eq!(
+            variants[1].choices(&choices).choice(Slot::Surface),
+            Choices::default().choice(Slot::Surface)
+        );
+        let levels = variants[0].variant().levels;
+        assert_eq!(
+            (levels[&Slot::Surface].as_str(), levels[&Slot::Sampler].as_str()),
+            ("paper", "paper projection")
+        );
+        assert_eq!(varied(&variants), levels.keys().copied().collect::<Vec<_>>());
     }
 }

@@ -1,12 +1,13 @@
 //! Study files: comparisons that are too long for a command line, or that are to be kept.
 
-use super::{Change, DEFAULT_BAND, Hypotheses, MeasureName, Pairs, VariantDraft, factorial};
+use super::{Change, DEFAULT_BAND, Hypotheses, Level, MeasureName, PRESET, Pairs, VariantDraft, factorial};
 use regrasp_api::{Refuse, Slot};
-use regrasp_host::{PresetChange, PresetLine, Registry, preset, slot_by_name};
-use regrasp_run::scenario::{self, Document, PluginTable, PluginTables, Scenario, ScenarioError, key_path};
+use regrasp_host::{HostError, Preset, Registry, preset, slot_by_name};
+use regrasp_run::scenario::{
+    self, BuiltIn, Document, PluginTable, PluginTables, Scenario, ScenarioError, key_path,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Map;
 use std::path::Path;
 
 /// How many seeds a study may have.
@@ -59,6 +60,10 @@ pub struct StudyFile {
 pub enum Suite {
     /// The paper's three problems.
     Paper,
+    /// The same with grasps given at both ends, five pairs each, as the paper's Algorithm 1 has them.
+    Strict,
+    /// The paper's problems made harder.
+    Harder,
     /// Every built-in scenario.
     All,
 }
@@ -68,30 +73,35 @@ const PAPER: [&str; 3] = ["sphere", "cubic", "ellip-obst"];
 
 impl Suite {
     /// Every suite.
-    pub const ALL: [Self; 2] = [Self::Paper, Self::All];
+    pub const ALL: [Self; 4] = [Self::Paper, Self::Strict, Self::Harder, Self::All];
 
     /// The name in files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Paper => "paper",
+            Self::Strict => "strict",
+            Self::Harder => "harder",
             Self::All => "all",
         }
     }
 
     /// The names of its scenarios.
     pub fn scenarios(self) -> Vec<&'static str> {
+        let names = |files: &[BuiltIn]| files.iter().map(|built_in| built_in.name).collect();
         match self {
             Self::Paper => PAPER.to_vec(),
-            Self::All => scenario::SCENARIOS.iter().map(|built_in| built_in.name).collect(),
+            Self::Strict => names(scenario::STRICT),
+            Self::Harder => names(scenario::HARDER),
+            Self::All => names(scenario::SCENARIOS),
         }
     }
 }
 
-/// A factor: one slot and what it is filled with in turn.
+/// A factor: one slot and what it is filled with in turn, or presets.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FactorTable {
-    /// The slot, such as `sampler` or `local-planner.regrasp`.
+    /// The slot, such as `sampler` or `local-planner.regrasp`; or `preset`, whose levels are presets by name.
     #[schemars(example = &"sampler")]
     pub slot: String,
     /// The levels: plugins, settings, or both.
@@ -135,11 +145,13 @@ pub fn load_study(path: &Path, registry: &Registry) -> Result<StudyRequest, Scen
     let content: StudyFile = document.read()?;
     let variants = variants(&document, &content, registry)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let base = changes(&document, &content.plugins, "plugins")?;
+    let base_preset = preset_of(&document, &content.plugins, "plugins")?;
+    let base = changes(&content.plugins);
     base.iter().try_for_each(|change| check_plugin(&document, change, "plugins", registry))?;
     let mut scenarios = Vec::new();
     for name in scenario_names(&document, &content, folder)? {
         let mut scenario = scenario::load(&name, registry)?;
+        base_preset.iter().for_each(|preset| preset.apply(&mut scenario.choices));
         base.iter().for_each(|change| change.apply(&mut scenario.choices));
         scenarios.push(scenario);
     }
@@ -170,7 +182,7 @@ fn scenario_names(
     folder: &Path,
 ) -> Result<Vec<String>, ScenarioError> {
     let suite = content.suite.map(Suite::scenarios).unwrap_or_default();
-    let place = |name: &String| match scenario::find(scenario::SCENARIOS, name) {
+    let place = |name: &String| match scenario::find_scenario(name) {
         Some(_) => name.clone(),
         // A word that is neither a built-in name nor looks like a file is for `load` to explain.
         None if !folder.join(name).exists() && Path::new(name).extension().is_none() => name.clone(),
@@ -201,9 +213,10 @@ fn variants(
     }
     let drafts = content.variant.iter().enumerate().map(|(i, table)| {
         let key = format!("variant[{i}].plugins");
-        let changes = changes(document, &table.plugins, &key)?;
+        let presets = preset_of(document, &table.plugins, &key)?.into_iter().collect();
+        let changes = changes(&table.plugins);
         changes.iter().try_for_each(|change| check_plugin(document, change, &key, registry))?;
-        Ok(VariantDraft { name: table.name.clone(), changes })
+        Ok(VariantDraft { name: table.name.clone(), presets, changes })
     });
     drafts.collect()
 }
@@ -213,48 +226,67 @@ fn factor(
     table: &FactorTable,
     index: usize,
     registry: &Registry,
-) -> Result<Vec<Change>, ScenarioError> {
+) -> Result<Vec<Level>, ScenarioError> {
     let key = format!("vary[{index}]");
-    let slot = slot_by_name(&table.slot).map_err(|error| {
-        let key = format!("{key}.slot");
-        document.refused(&error.refusal().told(&format!("`{key}`: {error}")).key(key))
-    })?;
+    let slot = match table.slot.as_str() {
+        PRESET => None,
+        name => Some(slot_by_name(name).map_err(|error| {
+            let key = format!("{key}.slot");
+            document.refused(&error.refusal().told(&format!("`{key}`: {error}")).key(key))
+        })?),
+    };
     if table.levels.is_empty() {
         let message = format!("`{key}.levels` is empty; give it plugins, such as [{{ use = \"…\" }}]");
         return Err(document.refuse(&key_path(&format!("{key}.levels")), message));
     }
+    let Some(slot) = slot else { return preset_levels(document, table, &key) };
     let levels = table.levels.iter().enumerate().map(|(k, level)| {
         let change = change(slot, level);
         check_id(document, &change, &format!("{key}.levels[{k}]"), registry)?;
-        Ok(change)
+        Ok(Level::Change(change))
     });
     levels.collect()
+}
+
+/// The levels of a factor of presets.
+fn preset_levels(document: &Document, table: &FactorTable, key: &str) -> Result<Vec<Level>, ScenarioError> {
+    let level = |(k, level): (usize, &PluginTable)| {
+        let key = format!("{key}.levels[{k}]");
+        match (&level.id, level.settings.is_empty()) {
+            (Some(name), true) => named_preset(document, name, &format!("{key}.use")).map(Level::Preset),
+            _ => {
+                let message = format!("`{key}` names a preset by `use`, such as `paper`, and nothing else");
+                Err(document.refuse(&key_path(&key), message))
+            }
+        }
+    };
+    table.levels.iter().enumerate().map(level).collect()
 }
 
 fn change(slot: Slot, table: &PluginTable) -> Change {
     Change { slot, id: table.id.clone(), settings: table.settings.clone() }
 }
 
-/// What tables of plugins change, the preset that they name first.
-fn changes(document: &Document, tables: &PluginTables, key: &str) -> Result<Vec<Change>, ScenarioError> {
-    let mut all = Vec::new();
-    if let Some(name) = &tables.preset {
-        let key = format!("{key}.preset");
-        let refuse =
-            |error: regrasp_host::HostError| document.refuse(&key_path(&key), format!("`{key}`: {error}"));
-        all.extend(preset(name).map_err(refuse)?.lines.iter().map(preset_change));
-    }
-    let changes = Slot::ALL.into_iter().map(|slot| change(slot, tables.table(slot)));
-    all.extend(changes.filter(|change| change.id.is_some() || !change.settings.is_empty()));
-    Ok(all)
+/// The preset that tables of plugins begin with.
+fn preset_of(
+    document: &Document,
+    tables: &PluginTables,
+    key: &str,
+) -> Result<Option<&'static Preset>, ScenarioError> {
+    let preset = |name: &String| named_preset(document, name, &format!("{key}.{PRESET}"));
+    tables.preset.as_ref().map(preset).transpose()
 }
 
-fn preset_change(line: &PresetLine) -> Change {
-    let (id, settings) = match line.change {
-        PresetChange::Use(id) => (Some(id.to_owned()), Map::new()),
-        PresetChange::Set(key, _) => (None, Map::from_iter([(key.to_owned(), line.value())])),
-    };
-    Change { slot: line.slot, id, settings }
+fn named_preset(document: &Document, name: &str, key: &str) -> Result<&'static Preset, ScenarioError> {
+    let refuse =
+        |error: HostError| document.refused(&error.refusal().told(&format!("`{key}`: {error}")).key(key));
+    preset(name).map_err(refuse)
+}
+
+/// What tables of plugins change after that.
+fn changes(tables: &PluginTables) -> Vec<Change> {
+    let changes = Slot::ALL.into_iter().map(|slot| change(slot, tables.table(slot)));
+    changes.filter(|change| change.id.is_some() || !change.settings.is_empty()).collect()
 }
 
 fn check_plugin(

@@ -58,7 +58,12 @@ fn what_does_not_fit_the_plan_is_refused() {
     assert!(refused(Extras { grip: Some(grip), ..Extras::default() }).contains("forces"));
     let replay = ReplayTrack { times: vec![1.0, 0.0], poses: vec![[0.0; 7]; 2], ..ReplayTrack::default() };
     assert!(refused(Extras { replay: Some(replay), ..Extras::default() }).contains("replay"));
-    let node = GraphNode { state: plan().segments[0].states[0].clone(), component: 0, end: None };
+    let node = GraphNode {
+        state: plan().segments[0].states[0].clone(),
+        component: 0,
+        grasp_component: 0,
+        end: None,
+    };
     let edges = vec![GraphEdge { from: 0, to: 1, kind: "grasp", fate: "failed" }];
     let graph = GraphPicture { nodes: vec![node], edges };
     assert!(refused(Extras { graph: Some(graph), ..Extras::default() }).contains("edge"));

@@ -115,7 +115,7 @@ fn cells(cell: &Cell<'_>) -> Vec<String> {
 }
 
 /// The table with its columns lined up, the first flush left, the others flush right.
-fn aligned(lines: &[Vec<String>]) -> String {
+pub(in crate::compare) fn aligned(lines: &[Vec<String>]) -> String {
     let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..lines[0].len()).map(width).collect();
     let text = |line: &Vec<String>| {
@@ -135,12 +135,12 @@ fn aligned(lines: &[Vec<String>]) -> String {
 }
 
 /// A name as code: nothing in it can end the code or the cell of a table.
-fn code(name: &str) -> String {
+pub(in crate::compare) fn code(name: &str) -> String {
     format!("`{}`", name.replace(['`', '|', '\n', '\r'], "'"))
 }
 
 /// Text of a user: what Markdown or HTML would take for a mark is only shown.
-fn plain(text: &str) -> String {
+pub(in crate::compare) fn plain(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {

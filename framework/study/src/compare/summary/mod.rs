@@ -11,6 +11,8 @@ mod words;
 pub use comparisons::comparisons_csv;
 pub use finding::{Finding, finding};
 pub use markdown::markdown;
+pub(super) use markdown::{aligned, code, plain};
+pub(super) use number::three_digits;
 pub use table::csv;
 pub use words::{cell, clause, family_text, line, signed, subject};
 
