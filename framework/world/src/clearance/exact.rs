@@ -84,9 +84,9 @@ impl MeshSolid {
     pub fn signed_distance_near(&self, p: &Vec3, limit: f64, near: &mut u32) -> f64 {
         let point = to_glam(p);
         // A facet's own distance is a bound that leaves little of the rest to be looked at.
-        let known = self.surface.triangle(*near).distance_to_local_point(point, true);
+        let known = self.surface().triangle(*near).distance_to_local_point(point, true);
         let limit = limit.min(known) * (1.0 + 1e-9) + f64::MIN_POSITIVE;
-        match self.surface.project_local_point_and_get_location_with_max_dist(point, false, limit) {
+        match self.surface().project_local_point_and_get_location_with_max_dist(point, false, limit) {
             Some((projection, (facet, _))) => {
                 *near = facet;
                 let distance = (point - projection.point).length();
