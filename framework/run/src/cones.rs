@@ -1,6 +1,6 @@
 //! The cones of a plan's contacts, as its file records them.
 
-use regrasp_api::{Configuration, ContactModel};
+use regrasp_api::{Cone, Configuration, Contact, ContactModel, FingerIndex};
 use regrasp_plan::{ConeClaim, ConeRecord, Motion, SegmentRecord};
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub(crate) struct Cones {
 impl Cones {
     /// What `model` says of every contact under the friction coefficient `mu`.
     pub fn of(motion: &Motion, model: &dyn ContactModel, mu: f64) -> Self {
-        let mut book = Book { model, mu, list: Vec::new(), known: BTreeMap::new() };
+        let mut book = Book { model, mu, list: Vec::new(), known: BTreeMap::new(), last: Vec::new() };
         let segments = motion.segments.iter();
         let numbers =
             segments.map(|segment| segment.states.iter().map(|q| book.numbers(q)).collect()).collect();
@@ -55,27 +55,43 @@ struct Book<'a> {
     list: Vec<ConeRecord>,
     /// Their numbers, by all their digits.
     known: BTreeMap<String, usize>,
+    /// The cone that each finger's last contact had, with its number: nearly always the next one's, too.
+    last: Vec<Option<(Cone<'static>, usize)>>,
 }
 
 impl Book<'_> {
     fn numbers(&mut self, q: &Configuration) -> Numbers {
-        let number = |(finger, contact): (_, &Option<_>)| {
-            let cone = ConeRecord::of(&self.model.cone(finger, contact.as_ref()?, self.mu));
-            let next = self.list.len();
-            let number = *self.known.entry(format!("{cone:?}")).or_insert(next);
-            if number == next {
-                self.list.push(cone);
+        self.last.resize(q.contacts.len(), None);
+        let number = |(finger, contact): (FingerIndex, &Option<Contact>)| {
+            let cone = self.model.cone(finger, contact.as_ref()?, self.mu);
+            if let Some((last, number)) = &self.last[finger.index()]
+                && *last == cone
+            {
+                return Some(*number);
             }
+            let number = self.book(&cone);
+            self.last[finger.index()] = Some((cone.into_owned(), number));
             Some(number)
         };
         q.contacts.iter().map(number).collect()
+    }
+
+    /// The number of a cone, which may be new.
+    fn book(&mut self, cone: &Cone<'_>) -> usize {
+        let record = ConeRecord::of(cone);
+        let next = self.list.len();
+        let number = *self.known.entry(format!("{record:?}")).or_insert(next);
+        if number == next {
+            self.list.push(record);
+        }
+        number
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use regrasp_api::{Cone, Contact, FingerIndex, PerFinger, Pose, Vec3};
+    use regrasp_api::{PerFinger, Pose, Vec3};
     use regrasp_plan::{Segment, SegmentKind};
 
     /// Finger 0 has a grain, if the model has one at all.
