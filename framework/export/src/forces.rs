@@ -16,8 +16,10 @@ pub(crate) struct Forces {
     /// What motors must exert where contacts drag while they spin, and how far ahead of the plan their joints
     /// must be so that the object is on its way while they creep; empty where contacts carry no torsion.
     driven: Vec<(Option<Held>, PerFinger<FingerJoints>)>,
-    /// Why there are none at all.
+    /// What there is not, and why.
     missing: Option<String>,
+    /// Whether the cones are known well enough for distances from them.
+    measured: bool,
     settings: SimulationSettings,
 }
 
@@ -32,18 +34,13 @@ impl Forces {
         grip: Option<f64>,
     ) -> Result<Self, ExportError> {
         let settings = settings(plan, grip);
-        let Some(cone) = plan.claims.contact.cone else {
-            let model = &plan.claims.contact.model;
-            let missing =
-                format!("`{model}` claims no elliptic friction cone, so no grasp forces are exported");
-            let count = motion.segments.iter().map(|segment| segment.states.len()).sum();
-            let held = vec![None; count];
-            return Ok(Self { held, driven: Vec::new(), missing: Some(missing), settings });
-        };
         // Another grip than the plan's asks for other forces.
         let stage = |segment| stage(segment, grip.is_none());
         let stages: Vec<Stage<'_>> = motion.segments.iter().map(stage).collect();
         let g_H = Vec3::from(plan.scenario.problem.gravity);
+        let Some(cone) = plan.claims.contact.cone else {
+            return Self::recorded(plan, &stages, (hand, object, g_H), settings);
+        };
         let friction = Friction::of(&cone.cone()).unwrap_or(Friction::point(cone.mu));
         let held = grasp_forces((hand, object, g_H), friction, &stages, &settings)?;
         let mut driven = Vec::new();
@@ -52,7 +49,32 @@ impl Forces {
             let ahead = creep(hand, friction, &stages, &dragged);
             driven = dragged.into_iter().flatten().zip(ahead.into_iter().flatten()).collect();
         }
-        Ok(Self { held: held.into_iter().flatten().collect(), driven, missing: None, settings })
+        let held = held.into_iter().flatten().collect();
+        Ok(Self { held, driven, missing: None, measured: true, settings })
+    }
+
+    /// The forces that the plan records where contacts share no elliptic cone: none are chosen then.
+    fn recorded(
+        plan: &Plan,
+        stages: &[Stage<'_>],
+        (hand, object, g_H): (&dyn Hand, &ObjectModel, Vec3),
+        settings: SimulationSettings,
+    ) -> Result<Self, ExportError> {
+        let model = &plan.claims.contact.model;
+        let whole = |stage: &Stage<'_>| {
+            stage.forces.len() == stage.states.len() && stage.forces.iter().all(Option::is_some)
+        };
+        let (held, without) = if stages.iter().all(whole) {
+            // No cone is wider than that of the object's friction; the efforts do not depend on it.
+            let friction = Friction::point(object.friction.max(1e-6));
+            let held = grasp_forces((hand, object, g_H), friction, stages, &settings)?;
+            (held.into_iter().flatten().collect(), "`force_margin` is left out")
+        } else {
+            let count = stages.iter().map(|stage| stage.states.len()).sum();
+            (vec![None; count], "no grasp forces are exported")
+        };
+        let missing = Some(format!("`{model}` claims no elliptic friction cone, so {without}"));
+        Ok(Self { held, driven: Vec::new(), missing, measured: false, settings })
     }
 
     /// What a finger exerts on the object in a state (in H); `None` where it does not hold it.
@@ -61,9 +83,9 @@ impl Forces {
     }
 
     /// The least distance of a force from its cone (N); not positive where no forces within cones and efforts
-    /// hold the object.
+    /// hold the object; `None` too where contacts share no elliptic cone.
     pub fn margin(&self, state: usize) -> Option<f64> {
-        self.exerted(state).map(|held| held.margin)
+        self.exerted(state).map(|held| held.margin).filter(|_| self.measured)
     }
 
     /// What the motors exert in a state.

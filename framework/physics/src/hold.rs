@@ -12,12 +12,12 @@ use std::slice;
 
 /// How much of the friction that a stage leaves over its forces may rely on, so that efforts stay away from
 /// their limits.
-const EASE: f64 = 0.25;
+pub(crate) const EASE: f64 = 0.25;
 /// Shares of the friction below this are not striven for: nothing slips there, and squeezing harder has a
 /// price.
-const ENOUGH: f64 = 0.3;
+pub(crate) const ENOUGH: f64 = 0.3;
 /// Where even all friction holds nothing, what is tried is this much more than the smallest share that would.
-const BEYOND: f64 = 1.05;
+pub(crate) const BEYOND: f64 = 1.05;
 
 /// How the object is held at one configuration.
 #[derive(Clone, Debug, PartialEq)]

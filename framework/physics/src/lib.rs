@@ -1,8 +1,8 @@
 //! Chooses grasp forces within friction cones and the joints' efforts, and simulates transfers and whole
 //! motions in rapier3d: the hand as jointed bodies driven by motors, the object free under gravity.
 //!
-//! [`grasp_forces`], [`dragged_forces`] and [`creep`] need no simulator; everything else is behind the
-//! feature `rapier`.
+//! [`grasp_forces`], [`edge_forces`], [`dragged_forces`] and [`creep`] need no simulator; everything else is
+//! behind the feature `rapier`.
 //!
 //! What is simulated:
 //! - each finger as a chain of bodies with the hand's joint axes, in reduced coordinates (no joint can come
@@ -23,6 +23,7 @@
 #[cfg(feature = "rapier")]
 mod border;
 mod drag;
+mod edge_forces;
 mod error;
 #[cfg(feature = "rapier")]
 mod finger;
@@ -48,6 +49,7 @@ mod surface;
 mod transfer;
 
 pub use drag::creep;
+pub use edge_forces::{EdgeForces, StageCones, edge_forces};
 pub use error::PhysicsError;
 pub use force::{Across, ContactForce, Friction};
 pub use grasp_forces::{dragged_forces, grasp_forces, grasp_forces_at};

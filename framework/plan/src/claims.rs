@@ -64,6 +64,15 @@ impl ConeRecord {
             Cone::Grained(grain) => Self::Elliptic(ConeClaim::of_grain(grain)),
         }
     }
+
+    /// The cone that is recorded.
+    pub fn cone(&self) -> Cone<'static> {
+        let edge = |edge: &EdgeRecord| ConeEdge { tangential: edge.tangential, torsion: edge.torsion };
+        match self {
+            Self::Elliptic(cone) => cone.cone(),
+            Self::Polyhedral(edges) => Cone::Polyhedral(edges.iter().map(edge).collect()),
+        }
+    }
 }
 
 /// An elliptic cone: |f_t|²/μ² + m²/γ² ≤ f_n²; with a grain f_a²/μ_a² + f_b²/μ_b² + m²/γ² ≤ f_n², f_a along

@@ -104,8 +104,10 @@ impl Scales {
     fn carries(&self, task: &Task<'_>, q: &Configuration, mass: f64) -> bool {
         let grasp = task.grasp(q, FingerSet::first(q.contacts.len()));
         let load = HeldLoad { mass, ..self.load };
-        let bearings = load.bearings(&grasp, None, (1.0, 1.0), |_| 0.0);
-        bearings.is_some_and(|all| load.held(&all, &grasp.g_O, 1.0, &mut Hint::default()).holds)
+        match load.bearings(&grasp, None, (1.0, 1.0), |_| 0.0) {
+            Some(all) => load.held(&all, &grasp.g_O, 1.0, &mut Hint::default()).holds,
+            None => load.held_by_edges(&load.edged(&grasp, None, (1.0, 1.0)), &grasp.g_O, 1.0).holds,
+        }
     }
 
     /// The largest mass that the grasp carries, where that is more than what the best did.

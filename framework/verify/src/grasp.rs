@@ -28,6 +28,7 @@ pub struct GraspVerifier {
     tolerances: Tolerances,
     weight_H: Vec3,
     mass: f64,
+    friction: f64,
 }
 
 /// The figures of one grasp that is right.
@@ -61,8 +62,8 @@ impl GraspVerifier {
                 return Err(SeriesError::new(format!("{}: {note}", check.name)));
             }
         }
-        let (weight_H, mass) = (weight_H(plan, &object), object.mass);
-        Ok(Self { hand, scene, claims: plan.claims.clone(), tolerances, weight_H, mass })
+        let (weight_H, mass, friction) = (weight_H(plan, &object), object.mass, object.friction);
+        Ok(Self { hand, scene, claims: plan.claims.clone(), tolerances, weight_H, mass, friction })
     }
 
     /// A judge, one for each thread.
@@ -79,7 +80,7 @@ impl GraspVerifier {
             frames: Frames::new(&self.hand),
             stability: StabilityCheck::new(&self.claims, self.weight_H),
             holding,
-            holds: HoldsCheck::new(&self.claims, self.weight_H, self.mass, true),
+            holds: HoldsCheck::new(&self.claims, (self.weight_H, self.mass, self.friction), true),
         }
     }
 }

@@ -77,6 +77,7 @@ impl<'w> Look<'w> {
         // The lowest height that the scenario lets a finger lift to.
         let lift = resolution.retreat.into_iter().fold(resolution.lift, f64::min);
         let (claims, weight_H) = (&self.plan.claims, weight_H(self.plan, self.object));
+        let friction = self.object.friction;
         Seen {
             contacts: ContactChecks::new(self.hand, self.scene, tolerances),
             clearance: ClearanceCheck::new(self.hand, self.scene, tolerances.clearance, self.smallest),
@@ -84,7 +85,7 @@ impl<'w> Look<'w> {
             stability: StabilityCheck::new(claims, weight_H),
             cones: ConesCheck::new(claims, weight_H),
             holding: self.holding(),
-            holds: HoldsCheck::new(claims, weight_H, self.object.mass, self.has_forces),
+            holds: HoldsCheck::new(claims, (weight_H, self.object.mass, friction), self.has_forces),
             controller: ControllerCheck::new(self.hand, tolerances.closure),
         }
     }

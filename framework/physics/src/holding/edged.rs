@@ -14,6 +14,9 @@ const MAX_STEPS: usize = 100;
 const SHY: f64 = 0.9;
 /// Room that accepted weights keep to every bound, of the weight that a search begins with.
 const ROOM: f64 = 1e-9;
+/// Newton decrement at which a centre is as good as exact, and that up to which a full step is surely safe.
+const CENTRED: f64 = 1e-4;
+const QUADRATIC: f64 = 0.25;
 /// Residual of balance, relative to the largest weight, that is rounding.
 const BALANCED: f64 = 1e-11;
 /// Edges round an elliptic cone, and their steps of torsion, where other contacts have edges of their own.
@@ -138,6 +141,8 @@ struct Step {
     /// The most power that weights within all bounds have on the multiplier; infinite where this step proves
     /// no bound.
     power: f64,
+    /// Newton's decrement.
+    decrement: f64,
 }
 
 impl Barrier {
@@ -187,7 +192,7 @@ impl Edged {
 }
 
 /// Where searches begin: all edges alike.
-pub(super) fn start(contacts: &[Edged]) -> Weights {
+pub(crate) fn start(contacts: &[Edged]) -> Weights {
     let each = |contact: &Edged| {
         let count = contact.edges.len();
         DVector::from_element(count, contact.start / count as f64)
@@ -197,21 +202,41 @@ pub(super) fn start(contacts: &[Edged]) -> Weights {
 
 /// Looks for weights whose wrench is `wanted`, from weights inside that need not balance (S. Boyd, L.
 /// Vandenberghe, "Convex Optimization", 2004, section 10.3).
-pub(super) fn balance(contacts: &[Edged], from: &Weights, wanted: &Vector6<f64>) -> EdgesBalanced {
+pub(crate) fn balance(contacts: &[Edged], from: &Weights, wanted: &Vector6<f64>) -> EdgesBalanced {
+    run(contacts, from, wanted, f64::INFINITY)
+}
+
+/// Looks for the analytic centre of the weights whose wrench is `wanted`: unique, and continuous in all data.
+pub(crate) fn centre_of_weights(contacts: &[Edged], from: &Weights, wanted: &Vector6<f64>) -> EdgesBalanced {
+    run(contacts, from, wanted, CENTRED)
+}
+
+fn run(contacts: &[Edged], from: &Weights, wanted: &Vector6<f64>, precision: f64) -> EdgesBalanced {
     let (mut weights, mut feasible) = (from.clone(), false);
     for _ in 0..MAX_STEPS {
         let Some(step) = step(contacts, &weights, wanted) else { return EdgesBalanced::Unknown };
         if !feasible && wanted.dot(&step.multiplier) > step.power * (1.0 + 1e-9) {
             return EdgesBalanced::No(step.multiplier);
         }
-        let t = (SHY * step.reach).min(1.0);
+        let mut t = (SHY * step.reach).min(1.0);
+        if feasible && step.decrement > QUADRATIC {
+            t = t.min(1.0 / (1.0 + step.decrement));
+        }
         weights.iter_mut().zip(&step.change).for_each(|(x, d)| *x += d * t);
         feasible |= t >= 1.0;
-        if feasible && balances(contacts, &weights, wanted) {
+        if feasible && step.decrement < precision && balances(contacts, &weights, wanted) {
             return EdgesBalanced::Yes(weights);
         }
     }
     EdgesBalanced::Unknown
+}
+
+/// Whether a search may begin with these weights.
+pub(crate) fn may_start(contacts: &[Edged], weights: &Weights) -> bool {
+    let fits = |(contact, weights): (&Edged, &DVector<f64>)| {
+        weights.len() == contact.edges.len() && contact.room(weights) >= ROOM
+    };
+    contacts.len() == weights.len() && contacts.iter().zip(weights).all(fits)
 }
 
 fn balances(contacts: &[Edged], weights: &Weights, wanted: &Vector6<f64>) -> bool {
@@ -236,13 +261,16 @@ fn step(contacts: &[Edged], weights: &Weights, wanted: &Vector6<f64>) -> Option<
         barriers.push(barrier);
     }
     let multiplier = Cholesky::new(S)?.solve(&right);
-    let mut step = Step { multiplier, change: Vec::new(), reach: f64::INFINITY, power: 0.0 };
+    let mut step = Step { multiplier, change: Vec::new(), reach: f64::INFINITY, power: 0.0, decrement: 0.0 };
     for ((contact, weights), barrier) in contacts.iter().zip(weights).zip(&barriers) {
-        let d = &barrier.inverse * (contact.map.transpose() * multiplier - &barrier.gradient);
+        let uphill = contact.map.transpose() * multiplier - &barrier.gradient;
+        let d = &barrier.inverse * &uphill;
+        step.decrement += d.dot(&uphill);
         step.reach = step.reach.min(contact.reach(weights, &d));
         step.power += contact.power(weights, &d);
         step.change.push(d);
     }
+    step.decrement = step.decrement.max(0.0).sqrt();
     Some(step)
 }
 

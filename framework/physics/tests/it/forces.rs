@@ -150,3 +150,41 @@ fn creep_is_that_of_the_limit_surface() {
     assert!((moved - tangential.normalize() * slid).norm() < 1e-9, "{moved} for {slid}");
     assert_eq!(ahead[2][finger], ahead[1][finger], "who rests does not creep");
 }
+
+/// Pyramids of many edges are nearly the cone round them: forces that balance, and need as little.
+#[test]
+fn edges_hold_nearly_as_the_cone_round_them() {
+    let edge = |k: u32| {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 16.0).sin_cos();
+        ConeEdge { tangential: [0.7 * cos, 0.7 * sin], torsion: 0.0 }
+    };
+    let pyramid = Cone::Polyhedral((0..16).map(edge).collect());
+    for object in shapes() {
+        let hand = hand();
+        let states = [ring(&hand, &object)];
+        let stage = |moving| Stage { states: &states, times: &[0.0], moving, forces: &[] };
+        let stages = [stage(None), stage(Some(FingerIndex(1)))];
+        let cones = vec![vec![Some(pyramid.clone()); 4]];
+        let (parts, settings) = ((&hand as &dyn Hand, &object, G), SimulationSettings::default());
+        let found = edge_forces(parts, &stages, &[cones.clone(), cones], &settings).unwrap();
+        let round = grasp_forces(parts, Friction::point(0.7), &stages, &settings).unwrap();
+        for (found, round) in found.iter().flatten().zip(round.iter().flatten()) {
+            let (found, round) = (found.as_ref().expect("it holds"), round.as_ref().expect("it holds"));
+            let (mut force, mut torque, mut most) = (G * object.mass, Vec3::zeros(), 0.0_f64);
+            for (finger, exerted) in found.forces.iter() {
+                assert_eq!(exerted.is_some(), round.forces[finger].is_some());
+                let Some(exerted) = exerted else { continue };
+                let contact = states[0].contacts[finger].expect("it holds");
+                let f_n = -contact.n_O.dot(exerted);
+                let share = (exerted + contact.n_O * f_n).norm() / (0.7 * f_n);
+                assert!(f_n > 0.0 && share <= found.share + 1e-9, "{share} {}", found.share);
+                most = most.max(share);
+                force += exerted;
+                torque += (contact.p_OC - object.p_OCm).cross(exerted);
+            }
+            assert!(force.norm() < 1e-6 && torque.norm() < 1e-7, "{force} {torque}");
+            // The centre of the edges' weights is not that of the forces, but neither is near the rim.
+            assert!((most - round.share).abs() < 0.1, "{most} {}", round.share);
+        }
+    }
+}

@@ -7,7 +7,7 @@
 //! 1956). Such a combination is a proof that arithmetic can check, whoever found it.
 
 use super::edge_hold::EdgeHold;
-use super::edges::{Edges, cone, exerted};
+use super::edges::{Edges, exerted};
 use super::force::{self, Contact};
 use super::held::Row;
 use super::load::LoadCheck;
@@ -18,7 +18,7 @@ use crate::track::{Frames, Leg};
 use crate::verdict::{Check, Gauge, Side};
 use nalgebra::{Cholesky, DVector, Matrix6, Vector6};
 use regrasp_api::{Cone, MAX_FINGERS, Rotation, Vec3};
-use regrasp_plan::{Claims, Criterion, Extreme, HoldsAt, Place};
+use regrasp_plan::{Claims, ConeRecord, Criterion, Extreme, HoldsAt, Place};
 
 /// The least share of an edge in a proof, the shares of all summing to 1.
 const LEAST_SHARE: f64 = 1e-8;
@@ -71,7 +71,7 @@ impl ConesCheck {
         }
         Some(Self {
             gauge,
-            cones: cones.iter().map(cone).collect(),
+            cones: cones.iter().map(ConeRecord::cone).collect(),
             center_O: claims.margin.center_O.into(),
             length: claims.margin.length,
             carried: None,

@@ -4,7 +4,6 @@ use super::force::Contact;
 use crate::touch::Touch;
 use nalgebra::{DVector, Vector6};
 use regrasp_api::{Cone, ConeEdge, Vec3, tangents};
-use regrasp_plan::{ConeRecord, EdgeRecord};
 
 /// The force (O) and the torque about the inward normal of each edge of a contact's cone at unit normal
 /// force, with a share of the friction.
@@ -44,15 +43,6 @@ pub(super) fn edges(cone: &Cone<'_>, n: &Vec3) -> Vec<ConeEdge> {
         })
     };
     levels.flat_map(level).collect()
-}
-
-/// The cone that a plan records.
-pub(super) fn cone(record: &ConeRecord) -> Cone<'static> {
-    let edge = |edge: &EdgeRecord| ConeEdge { tangential: edge.tangential, torsion: edge.torsion };
-    match record {
-        ConeRecord::Elliptic(cone) => cone.cone(),
-        ConeRecord::Polyhedral(edges) => Cone::Polyhedral(edges.iter().map(edge).collect()),
-    }
 }
 
 /// One contact: the wrenches of its cone's edges at unit normal force, and what each takes of each joint's

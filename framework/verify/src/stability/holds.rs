@@ -1,14 +1,16 @@
 //! What the plan's own forces hold: arithmetic on the forces that its states record.
 
 use super::force::{Contact, Correction, Force, Forces, scaled};
-use super::held::{Held, Row};
+use super::grip::{Cones, Grip};
+use super::held::Row;
 use super::load::icosahedron;
+use super::room::{Room, share_of};
 use crate::hand::Chains;
 use crate::track::{Frames, Leg};
 use crate::verdict::{Check, Gauge};
-use nalgebra::{Matrix3, Vector6};
-use regrasp_api::{HoldLoad, MAX_FINGERS, Vec3};
-use regrasp_plan::{Claims, ConeClaim, Criterion, Extreme, Holds, HoldsAt, Place};
+use nalgebra::Vector6;
+use regrasp_api::{HoldLoad, Vec3};
+use regrasp_plan::{Claims, Criterion, Extreme, Holds, HoldsAt, Place};
 use std::cmp::Ordering;
 
 /// How far forces may be from balance, of the load.
@@ -23,7 +25,7 @@ pub(crate) struct HoldsCheck {
     gauge: Gauge,
     /// What the plan claims to hold, if it does.
     load: Option<HoldLoad>,
-    cone: ConeClaim,
+    cones: Cones,
     weight_H: Vec3,
     mass: f64,
     center_O: Vec3,
@@ -39,7 +41,7 @@ pub(crate) struct HoldsCheck {
 /// A grasp with its forces, and the object's weight in O.
 #[derive(PartialEq)]
 struct Here {
-    held: Held,
+    grip: Grip,
     forces: Forces,
     weight_O: Vec3,
 }
@@ -54,9 +56,13 @@ struct Figures {
 }
 
 impl HoldsCheck {
-    /// `None` where the plan claims no cone, or none of its states holds forces.
-    pub(crate) fn new(claims: &Claims, weight_H: Vec3, mass: f64, has_forces: bool) -> Option<Self> {
-        let cone = claims.contact.cone.filter(|cone| cone.least() > 0.0 && cone.most().is_finite())?;
+    /// `None` where the plan claims no cones, or none of its states holds forces; `friction` is the object's.
+    pub(crate) fn new(
+        claims: &Claims,
+        (weight_H, mass, friction): (Vec3, f64, f64),
+        has_forces: bool,
+    ) -> Option<Self> {
+        let cones = Cones::new(&claims.contact, friction)?;
         let load = match &claims.criterion {
             Criterion::Holding(load) => Some(*load),
             _ => None,
@@ -65,7 +71,7 @@ impl HoldsCheck {
         (has_forces && length > 0.0 && mass > 0.0).then(|| Self {
             gauge: Gauge::faults("forces"),
             load,
-            cone,
+            cones,
             weight_H,
             mass,
             center_O: claims.margin.center_O.into(),
@@ -83,7 +89,7 @@ impl HoldsCheck {
         let record = leg.states[state].record;
         let Some(recorded) = &record.forces else {
             // Soft fingers may hold by torques about the normals, which are not recorded.
-            if self.cone.gamma == 0.0 {
+            if !self.cones.have_torsion() {
                 let nothing =
                     Figures { friction: NO_FRICTION_DOES, mass: 0.0, disturbance: 0.0, effort: 0.0 };
                 self.take(&nothing, || leg.at(state));
@@ -91,12 +97,12 @@ impl HoldsCheck {
             return;
         };
         let place = |note: &str| Place { note: Some(note.into()), ..leg.at(state) };
-        let (held, forces) = match self.recorded(leg, state, recorded, hand, frames) {
+        let (grip, forces) = match self.recorded(leg, state, recorded, hand, frames) {
             Ok(read) => read,
             Err(fault) => return self.gauge.fault(|| place(fault)),
         };
         let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
-        let here = Here { held, forces, weight_O };
+        let here = Here { grip, forces, weight_O };
         let (fault, figures) = self.look(here);
         if let Some(fault) = fault {
             self.gauge.fault(|| place(fault));
@@ -112,8 +118,8 @@ impl HoldsCheck {
         {
             return (*fault, *figures);
         }
-        let fault = self.fault(&here.held, &here.forces, &here.weight_O);
-        let figures = self.figures(&here.held, &here.forces, &here.weight_O);
+        let fault = self.fault(&here.grip, &here.forces, &here.weight_O);
+        let figures = self.figures(&here.grip, &here.forces, &here.weight_O);
         self.last = Some((here, fault, figures));
         (fault, figures)
     }
@@ -128,11 +134,11 @@ impl HoldsCheck {
         frames: &Frames,
     ) -> Option<Result<(f64, f64), &'static str>> {
         let recorded = leg.states[state].record.forces.as_ref()?;
-        Some(self.recorded(leg, state, recorded, hand, frames).and_then(|(held, forces)| {
+        Some(self.recorded(leg, state, recorded, hand, frames).and_then(|(grip, forces)| {
             let weight_O = frames.X_HO.rotation.inverse() * self.weight_H;
-            match self.fault(&held, &forces, &weight_O) {
+            match self.fault(&grip, &forces, &weight_O) {
                 Some(fault) => Err(fault),
-                None => Ok(self.needs(&held, &forces)),
+                None => Ok(self.needs(&grip, &forces)),
             }
         }))
     }
@@ -145,9 +151,9 @@ impl HoldsCheck {
         recorded: &[Option<[f64; 3]>],
         hand: &Chains,
         frames: &Frames,
-    ) -> Result<(Held, Forces), &'static str> {
-        let (mut held, mut given) = (Held::default(), Vec::new());
-        let cone = self.cone.cone().without_torsion();
+    ) -> Result<(Grip, Forces), &'static str> {
+        let (mut grip, mut given) = (Grip::default(), Vec::new());
+        let numbers = leg.states[state].record.cones.as_deref().unwrap_or_default();
         for (finger, contact) in leg.states[state].record.contacts.iter().enumerate() {
             let force = recorded.get(finger).copied().flatten();
             let holds = contact.filter(|_| leg.moving != Some(finger));
@@ -159,22 +165,25 @@ impl HoldsCheck {
             };
             let (p_OC, n) = (Vec3::from(contact.point_O), -Vec3::from(contact.normal_O));
             let r = (p_OC - self.center_O) / self.length;
-            held.contacts.extend(Contact::new(r, n, &cone, self.length));
-            held.rows.push(hand.rows(finger, frames, &p_OC, &n));
+            let rows = hand.rows(finger, frames, &p_OC, &n);
+            let number = numbers.get(finger).copied().flatten();
+            if !self.cones.add(number, (r, n, self.length), rows, &mut grip) {
+                return Err("a force at a contact without a recorded cone");
+            }
             given.push(Vec3::from(force));
         }
         if !given.iter().flatten().all(|x| x.abs() < 1e9) {
             return Err("a force that is not finite, or beyond any hand");
         }
-        let forces = scaled(&held.contacts, &given);
-        Ok((held, forces))
+        let forces = scaled(&grip.held.contacts, &given);
+        Ok((grip, forces))
     }
 
     /// What is wrong with the forces of one state.
-    fn fault(&self, held: &Held, forces: &Forces, weight_O: &Vec3) -> Option<&'static str> {
+    fn fault(&self, grip: &Grip, forces: &Forces, weight_O: &Vec3) -> Option<&'static str> {
         let mut residual = Vector6::new(weight_O.x, weight_O.y, weight_O.z, 0.0, 0.0, 0.0);
         let mut largest = residual.norm();
-        for (contact, force) in held.contacts.iter().zip(forces) {
+        for (contact, force) in grip.held.contacts.iter().zip(forces) {
             let wrench = contact.wrench(force);
             residual += wrench;
             largest = largest.max(wrench.norm());
@@ -183,11 +192,11 @@ impl HoldsCheck {
             return Some("the forces do not balance the object's weight");
         }
         let load = self.load.as_ref()?;
-        for (i, force) in forces.iter().enumerate().take(held.contacts.len()) {
-            if friction_of(force) > load.friction_factor * (1.0 + ROUNDING) {
+        for (i, force) in forces.iter().enumerate().take(grip.held.contacts.len()) {
+            if grip.friction_of(i, force) > load.friction_factor * (1.0 + ROUNDING) {
                 return Some("a force relies on more friction than the plan claims");
             }
-            if effort_of(held, i, force, self.length) > 1.0 + ROUNDING {
+            if effort_of(grip, i, force, self.length) > 1.0 + ROUNDING {
                 return Some("a force takes more than a joint's effort");
             }
             if load.max_normal_force.is_some_and(|most| force.normal > most * (1.0 + ROUNDING)) {
@@ -197,20 +206,21 @@ impl HoldsCheck {
         None
     }
 
-    /// The friction (with a grain the larger coefficient at the share that forces take), and the largest
-    /// share of an effort, that forces take.
-    fn needs(&self, held: &Held, forces: &Forces) -> (f64, f64) {
-        let each = || (0..held.contacts.len()).map(|i| (i, &forces[i]));
-        let friction = each().map(|(_, force)| friction_of(force)).fold(0.0, f64::max) * self.cone.most();
-        (friction, each().map(|(i, force)| effort_of(held, i, force, self.length)).fold(0.0, f64::max))
+    /// The friction (with a grain the larger coefficient at the share that forces take, with cones of their
+    /// own the object's at that share), and the largest share of an effort, that forces take.
+    fn needs(&self, grip: &Grip, forces: &Forces) -> (f64, f64) {
+        let each = || (0..grip.held.contacts.len()).map(|i| (i, &forces[i]));
+        let share = each().map(|(i, force)| grip.friction_of(i, force)).fold(0.0, f64::max);
+        let effort = each().map(|(i, force)| effort_of(grip, i, force, self.length)).fold(0.0, f64::max);
+        (share * self.cones.most(), effort)
     }
 
-    fn figures(&self, held: &Held, forces: &Forces, weight_O: &Vec3) -> Figures {
-        let (friction, effort) = self.needs(held, forces);
+    fn figures(&self, grip: &Grip, forces: &Forces, weight_O: &Vec3) -> Figures {
+        let (friction, effort) = self.needs(grip, forces);
         let mut figures =
             Figures { friction: friction.min(NO_FRICTION_DOES), mass: 0.0, disturbance: 0.0, effort };
-        let Some(correction) = Correction::new(&held.contacts) else { return figures };
-        let room = Room::new(held, forces, &correction, self.length);
+        let Some(correction) = Correction::new(&grip.held.contacts) else { return figures };
+        let room = Room::new(grip, forces, &correction, self.length);
         figures.mass = if weight_O.norm() > 0.0 { self.mass * (1.0 + room.reach(&-weight_O)) } else { 0.0 };
         figures.disturbance = icosahedron().iter().map(|push| room.reach(push)).fold(f64::INFINITY, f64::min);
         figures
@@ -271,100 +281,12 @@ fn is_worse(kept: &Option<Extreme>, value: f64, worse: Ordering) -> bool {
     kept.as_ref().is_none_or(|kept| value.partial_cmp(&kept.value) == Some(worse))
 }
 
-/// How far forces may grow within cones and efforts: what is worked out once for all pushes.
-///
-/// What contacts give on top of their forces is linear in the push, the smallest forces that have its wrench:
-/// so a cone's boundary is a quadratic in the multiple whose coefficients are linear and quadratic in the
-/// push, and an effort's share is linear in it.
-struct Room {
-    cones: [ConeRoom; MAX_FINGERS],
-    count: usize,
-    /// Of each joint: how its share of an effort grows along each axis of O, and the share now.
-    rows: Vec<(Vec3, f64)>,
-}
-
-/// The room of one contact's force in its cone.
-#[derive(Clone, Copy, Default)]
-struct ConeRoom {
-    is_outside: bool,
-    /// normal² - |tangential|² of the force ...
-    form: f64,
-    /// ... how twice that of the force and its change grows along each axis of O ...
-    slope: Vec3,
-    /// ... and that of the change, along two axes.
-    curve: Matrix3<f64>,
-}
-
-impl Room {
-    fn new(held: &Held, forces: &Forces, correction: &Correction, length: f64) -> Self {
-        let contacts = &held.contacts[..];
-        let unit = |axis: usize| {
-            let mut wanted = Vector6::zeros();
-            wanted[axis] = 1.0;
-            correction.towards(contacts, &[Force::default(); MAX_FINGERS], &wanted)
-        };
-        let units: [Forces; 3] = std::array::from_fn(unit);
-        let mut cones = [ConeRoom::default(); MAX_FINGERS];
-        for (i, cone) in cones.iter_mut().enumerate().take(contacts.len()) {
-            let (force, unit) = (&forces[i], |axis: usize| &units[axis][i]);
-            cone.form = form(force, force);
-            cone.is_outside = cone.form <= 0.0 || force.normal <= 0.0;
-            cone.slope = Vec3::from_fn(|axis, _| 2.0 * form(force, unit(axis)));
-            cone.curve = Matrix3::from_fn(|a, b| form(unit(a), unit(b)));
-        }
-        let mut rows = Vec::with_capacity(held.rows.iter().map(Vec::len).sum());
-        for (i, (contact, behind)) in contacts.iter().zip(&held.rows).enumerate() {
-            rows.extend(behind.iter().map(|row| {
-                let parts = row.of(contact, length, 1.0);
-                (Vec3::from_fn(|axis, _| share_of(&parts, &units[axis][i])), share_of(&parts, &forces[i]))
-            }));
-        }
-        Self { cones, count: contacts.len(), rows }
-    }
-
-    /// The largest multiple of a force on the object (in O) that the contacts can give on top; 0 where the
-    /// forces are outside already.
-    fn reach(&self, push_O: &Vec3) -> f64 {
-        let cones = self.cones[..self.count].iter().map(|cone| cone.reach(push_O));
-        let efforts = self.rows.iter().map(|(rates, now)| {
-            let rate = rates.dot(push_O);
-            if rate == 0.0 { f64::INFINITY } else { ((rate.signum() - now) / rate).max(0.0) }
-        });
-        cones.chain(efforts).fold(1e6, f64::min)
-    }
-}
-
-/// A cone's form: positive inside, for a force and itself.
-fn form(a: &Force, b: &Force) -> f64 {
-    a.normal * b.normal - a.tangential.dot(&b.tangential)
-}
-
-impl ConeRoom {
-    /// The smallest λ > 0 at which force + λ more leaves the cone normal ≥ |tangential|.
-    fn reach(&self, push_O: &Vec3) -> f64 {
-        if self.is_outside {
-            return 0.0;
-        }
-        let (slope, curve) = (self.slope.dot(push_O), push_O.dot(&(self.curve * push_O)));
-        let root = (slope * slope - 4.0 * curve * self.form).max(0.0).sqrt();
-        if root > slope { 2.0 * self.form / (root - slope) } else { f64::INFINITY }
-    }
-}
-
-/// The share of the friction that a force needs.
-fn friction_of(force: &Force) -> f64 {
-    if force.normal > 0.0 { force.tangential.norm() / force.normal } else { f64::INFINITY }
-}
-
 fn share(row: &Row, contact: &Contact, force: &Force, length: f64) -> f64 {
     share_of(&row.of(contact, length, 1.0), force)
 }
 
-fn share_of((normal, tangential, spin): &(f64, Vec3, f64), force: &Force) -> f64 {
-    normal * force.normal + tangential.dot(&force.tangential) + spin * force.spin
-}
-
 /// The largest share of an effort limit behind the contact with this number.
-fn effort_of(held: &Held, i: usize, force: &Force, length: f64) -> f64 {
+fn effort_of(grip: &Grip, i: usize, force: &Force, length: f64) -> f64 {
+    let held = &grip.held;
     held.rows[i].iter().map(|row| share(row, &held.contacts[i], force, length).abs()).fold(0.0, f64::max)
 }

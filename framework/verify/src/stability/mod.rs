@@ -9,12 +9,15 @@ mod edge_hold;
 mod edge_load;
 mod edges;
 mod force;
+mod grip;
 mod held;
 mod holding;
 mod holds;
 mod load;
 mod own;
+mod room;
 mod six;
+mod slice;
 mod socp;
 
 use crate::touch::Touch;
