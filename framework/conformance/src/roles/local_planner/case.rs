@@ -1,5 +1,6 @@
 //! Problems for local planners: starts and targets.
 
+use super::links::through_something;
 use super::places::{
     around, at_rest, beside_a_pin, clasp, closed, on_ball, outside, ring, slack, somewhere, turned,
     two_soft_ones,
@@ -250,6 +251,9 @@ fn regrasps() -> Vec<Case> {
         cases.push(regrasp(free, from, &to, 1, Some("far")));
     }
     cases.extend(over_an_edge());
+    cases.extend(
+        through_something().into_iter().map(|(bench, [from, to])| regrasp(bench, from, &to, 0, None)),
+    );
     cases
 }
 

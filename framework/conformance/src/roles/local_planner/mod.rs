@@ -4,6 +4,7 @@ mod answer;
 mod case;
 mod inspect;
 mod journey;
+mod links;
 mod places;
 mod special;
 mod way;

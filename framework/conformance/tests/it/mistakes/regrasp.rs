@@ -7,6 +7,12 @@ const SLOT: Slot = Slot::RegraspPlanner;
 
 struct Mistaken(String);
 
+/// Whether one of a pair is a link and the other such a body.
+fn is_link_and(pair: &BodyPair, other: fn(&Body) -> bool) -> bool {
+    let link = |body: &Body| matches!(body, Body::Link(..));
+    link(&pair.0) && other(&pair.1) || other(&pair.0) && link(&pair.1)
+}
+
 impl Mistaken {
     fn new(mistake: String, _: &Parts<'_>) -> Self {
         Self(mistake)
@@ -16,6 +22,18 @@ impl Mistaken {
     fn sees(&self) -> fn(&BodyPair) -> bool {
         match self.0.as_str() {
             "no-obstacles" => |pair| !matches!(pair, (Body::Obstacle(_), _) | (_, Body::Obstacle(_))),
+            "no-palm" => |pair| !matches!(pair, (Body::Palm, _) | (_, Body::Palm)),
+            "fingertips-alone" => |pair| !matches!(pair, (Body::Link(..), _) | (_, Body::Link(..))),
+            "no-other-fingers" => |pair| {
+                use Body::{Fingertip, Link};
+                !matches!(pair, (Fingertip(_) | Link(..), Fingertip(_) | Link(..)))
+            },
+            // What an author forgets who thinks of the finger as a point: links against one thing each.
+            "links-through-the-object" => |pair| !is_link_and(pair, |body| matches!(body, Body::Object)),
+            "links-through-obstacles" => |pair| !is_link_and(pair, |body| matches!(body, Body::Obstacle(_))),
+            "links-through-fingertips" => {
+                |pair| !is_link_and(pair, |body| matches!(body, Body::Fingertip(_)))
+            }
             _ => |_| true,
         }
     }
@@ -137,6 +155,12 @@ fn caught() {
         &entry,
         &[
             ("no-obstacles", "regrasp-collision-free"),
+            ("no-palm", "regrasp-collision-free"),
+            ("fingertips-alone", "regrasp-collision-free"),
+            ("no-other-fingers", "regrasp-collision-free"),
+            ("links-through-the-object", "regrasp-collision-free"),
+            ("links-through-obstacles", "regrasp-collision-free"),
+            ("links-through-fingertips", "regrasp-collision-free"),
             ("cannot-release", "regrasp-succeeds"),
             ("cannot-place", "regrasp-succeeds"),
             ("short-ways-alone", "regrasp-succeeds"),
