@@ -1,7 +1,8 @@
 //! Role 5: connecting two configurations inside one kind of subspace.
 
 use crate::{
-    CallError, Configuration, Contact, Context, FingerIndex, FingerJoints, Path, Pose, Reason, Task,
+    CallError, Configuration, Contact, Context, FingerIndex, FingerJoints, Path, Pose, Reason, Resolution,
+    Task, angle_between,
 };
 
 /// Where a local planner is to go.
@@ -20,6 +21,30 @@ pub enum Target<'a> {
         /// Its joint positions at the end; they bring the fingertip to `contact`.
         joints: &'a FingerJoints,
     },
+}
+
+impl Target<'_> {
+    /// The share of the object's way from `from` that is made at a state of a transfer, in [0, 1]: what a
+    /// planner that wraps another gives as [`Reached::fraction`] where it cuts its path at that state.
+    ///
+    /// Of shift and turn that one counts which takes more steps. `None` in the other slots, where planners
+    /// are all or nothing.
+    pub fn fraction_at(
+        &self,
+        resolution: &Resolution,
+        from: &Configuration,
+        state: &Configuration,
+    ) -> Option<f64> {
+        let Self::Transfer(X_HO) = self else { return None };
+        let shift = |X: &Pose| (X.translation.vector - from.X_HO.translation.vector).norm();
+        let turn = |X: &Pose| angle_between(&from.X_HO.rotation, &X.rotation);
+        let (shifts, turns) = (shift(X_HO), turn(X_HO));
+        let (made, whole) = match shifts / resolution.transfer_step >= turns / resolution.transfer_turn {
+            true => (shift(&state.X_HO), shifts),
+            false => (turn(&state.X_HO), turns),
+        };
+        Some(if whole > 0.0 { (made / whole).min(1.0) } else { 1.0 })
+    }
 }
 
 /// How far a local planner came.
@@ -72,3 +97,35 @@ pub trait LocalPlanner: Send + Sync {
     ) -> Result<Reached, CallError>;
 }
 const _: Option<&dyn LocalPlanner> = None; // must stay object safe
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{PerFinger, Rotation, Vec3, interpolate};
+
+    #[test]
+    fn the_fraction_of_a_state_is_the_share_of_the_way_that_takes_more_steps() {
+        let at = |X_HO| Configuration {
+            X_HO,
+            joints: PerFinger::filled(1, FingerJoints::default()),
+            contacts: PerFinger::filled(1, None),
+        };
+        let (start, resolution) = (at(Pose::translation(0.1, 0.0, 0.0)), Resolution::default());
+        let turned = Rotation::from_scaled_axis(Vec3::z());
+        for end in [
+            Pose::translation(0.2, 0.0, 0.05),
+            Pose::from_parts(start.X_HO.translation, turned),
+            Pose::from_parts(Vec3::new(0.1001, 0.0, 0.0).into(), turned),
+        ] {
+            let to = Target::Transfer(&end);
+            for s in [0.0, 0.25, 0.5, 1.0] {
+                let state = at(interpolate(&start.X_HO, &end, s));
+                let found = to.fraction_at(&resolution, &start, &state).expect("it is a transfer");
+                assert!((found - s).abs() < 1e-9, "{found} for {s}");
+            }
+        }
+        // There is no way to make.
+        assert_eq!(Target::Transfer(&start.X_HO).fraction_at(&resolution, &start, &start), Some(1.0));
+        assert_eq!(Target::Grasp(&start).fraction_at(&resolution, &start, &start), None);
+    }
+}
