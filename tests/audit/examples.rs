@@ -10,6 +10,7 @@ fn the_examples_keep_the_laws_in_a_real_problem() {
     for (slot, id) in [
         (Slot::ContactModel, "grained"),
         (Slot::Surface, "remembering"),
+        (Slot::Surface, "superquadric"),
         (Slot::TransferPlanner, "guarded"),
         (Slot::RegraspPlanner, "roadmap"),
         (Slot::GraphStrategy, "bandit"),
@@ -22,6 +23,25 @@ fn the_examples_keep_the_laws_in_a_real_problem() {
         let (run, case) = setup(&scenario).unwrap().run_audited(&options, Depth::Full);
         assert!(case.is_none(), "{id}: {:?}", case.map(|case| case.breach));
         assert!(run.unwrap().is_verified(), "{id}");
+    }
+}
+
+/// Trait, kit, book and example say in the same words whose points and normals are.
+#[test]
+fn one_truth_about_surfaces_is_said_everywhere() {
+    const WORDS: &str = "There is one true surface, the object's mesh: points and normals are the mesh's, \
+        whatever closed form stood behind it.";
+    for file in [
+        "framework/api/src/roles/surface_param.rs",
+        "framework/conformance/src/roles/surface/mod.rs",
+        "examples/plugins/src/superquadric.rs",
+        "book/src/tutorials/surface.md",
+    ] {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+        let text = std::fs::read_to_string(path).expect("it is part of the sources");
+        let words = text.split_whitespace().filter(|word| !word.starts_with("//") && *word != "///");
+        let text = words.collect::<Vec<_>>().join(" ").replace("([`crate::ObjectModel::mesh`])", "");
+        assert!(text.replace("mesh :", "mesh:").contains(WORDS), "{file}");
     }
 }
 

@@ -1,4 +1,7 @@
 //! The laws of surfaces.
+//!
+//! There is one true surface, the object's mesh: points and normals are the mesh's, whatever closed form
+//! stood behind it.
 
 mod ground;
 mod motion;
@@ -10,7 +13,7 @@ use crate::law::Law;
 pub(crate) const LAWS: &[Law] = &[
     Law {
         name: "sample-on-surface",
-        why: "every contact of a plan begins as a sample",
+        why: "every contact of a plan begins as a sample, and points and normals are the mesh's",
         check: point::sample_on_surface,
     },
     Law {
@@ -20,7 +23,7 @@ pub(crate) const LAWS: &[Law] = &[
     },
     Law {
         name: "project-exact",
-        why: "rolling keeps contacts closed by projecting the fingertip's centre",
+        why: "rolling projects the fingertip's centre, and points and normals are the mesh's",
         check: point::project_exact,
     },
     Law {
