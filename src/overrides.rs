@@ -143,4 +143,51 @@ mod tests {
         assert!(set(&mut choices, "sampler.tries=").is_ok());
         assert_eq!(choices.choice(Slot::Sampler).settings["tries"], Value::Null);
     }
+
+    /// How something is done.
+    #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+    #[serde(rename_all = "kebab-case")]
+    enum How {
+        /// As always.
+        Plain,
+        /// As not a number.
+        Nan,
+    }
+
+    /// Settings with a word that TOML reads as a number, and an option that has a default.
+    #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+    #[serde(deny_unknown_fields, default)]
+    struct Own {
+        /// How it is done.
+        how: How,
+        /// The most (N), if there is one.
+        #[schemars(range(min = 0.0, max = 10.0), extend("x-unit" = "N"))]
+        most: Option<f64>,
+    }
+
+    impl Default for Own {
+        fn default() -> Self {
+            Self { how: How::Plain, most: Some(3.0) }
+        }
+    }
+
+    impl regrasp::api::Settings for Own {}
+
+    #[test]
+    fn words_that_read_as_numbers_and_options_with_defaults_reach_the_plugin() {
+        use regrasp::api::{Settings, fill_defaults};
+        let made = |sets: &[&str]| {
+            let mut choices = Choices::default();
+            sets.iter().for_each(|text| set(&mut choices, text).unwrap());
+            let mut settings = choices.choice(Slot::Sampler).settings.clone();
+            let schema = serde_json::from_str(&Own::schema()).unwrap();
+            fill_defaults(&mut settings, &schema);
+            Own::from_json(&Value::Object(settings).to_string())
+        };
+        assert_eq!(made(&[]).unwrap(), Own::default());
+        assert_eq!(made(&["sampler.how=nan"]).unwrap(), Own { how: How::Nan, most: Some(3.0) });
+        assert_eq!(made(&["sampler.most="]).unwrap(), Own { how: How::Plain, most: None });
+        let refused = made(&["sampler.most=nan"]).unwrap_err().to_string();
+        assert!(refused.contains("`most`"), "{refused}");
+    }
 }

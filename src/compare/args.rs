@@ -93,7 +93,8 @@ pub struct CompareArgs {
     /// row. Runs take several times as long, so their times say nothing.
     #[arg(long)]
     pub audit: bool,
-    /// Keep the plan of every run in `plans/SCENARIO/`.
+    /// Keep the plan of every run: `plans/SCENARIO.json` the baseline's with the first seed, as always, and
+    /// `plans/SCENARIO/VARIANT-SEED.json` all others, variants counted from 0.
     #[arg(long)]
     pub keep_plans: bool,
     /// Make this run alone and print it: what `--isolate` starts.

@@ -36,6 +36,15 @@ fn every_role_compiles_passes_the_kit_loads_and_plans() {
     ROLES.iter().for_each(|(role, _)| works(role));
 }
 
+/// A dependency is added as in any other crate: cargo need not be told to which package of the workspace.
+#[test]
+fn a_dependency_is_added_without_naming_the_package() {
+    written("sampler");
+    let here = concat!(env!("CARGO_MANIFEST_DIR"), "/framework/world");
+    let said = cargo("sampler", &["add", "--dry-run", "--path", here]);
+    assert!(said.code == Some(0) && said.err.contains("regrasp-world"), "{said:?}");
+}
+
 #[test]
 fn what_the_verifier_takes_on_trust_is_said_with_the_plan() {
     let library = written("contact-model");

@@ -72,6 +72,29 @@ fn a_row_says_what_plan_says() {
 }
 
 #[test]
+fn the_plans_of_all_runs_are_kept_where_that_is_asked_for() {
+    let desk = Desk::new();
+    let vary = ["--vary", "graph-strategy=interleaved{start=0.2},lazy"].join(" ");
+    let said = desk.run(&format!("compare sphere {vary} --seeds 2 --keep-plans --isolate -o study"));
+    assert_eq!(said.code, 0, "{}", said.err);
+    for (plan, seed, used) in [
+        ("sphere.json", 0, "interleaved"),
+        ("sphere/0-1.json", 1, "interleaved"),
+        ("sphere/1-0.json", 0, "lazy"),
+        ("sphere/1-1.json", 1, "lazy"),
+    ] {
+        let text: Value = serde_json::from_str(&desk.read(&format!("study/plans/{plan}"))).expect("a plan");
+        let strategy = &text["scenario"]["plugins"]["graph-strategy"];
+        assert_eq!(
+            (&text["seed"], &strategy["id"]),
+            (&seed.into(), &format!("graph-strategy/{used}").into())
+        );
+        // The settings of one variant are no other's.
+        assert_eq!(strategy["settings"]["start"] == 0.2, used == "interleaved", "{plan}: {strategy}");
+    }
+}
+
+#[test]
 fn runs_that_fail_are_rows() {
     let desk = Desk::new();
     // Three contacts on one side of the ball: a start that no contact model calls stable.

@@ -1,7 +1,7 @@
 //! What is said: to bad input, of other studies, in study files, in tables.
 
 use super::shelf::runs;
-use crate::desk::Desk;
+use crate::desk::{Desk, built_in};
 use std::collections::BTreeSet;
 
 #[test]
@@ -137,4 +137,16 @@ fn the_papers_table_is_printed() {
         assert!(said.out.contains(row), "{row}\n{}", said.out);
     }
     assert!(said.err.is_empty(), "nobody watches: {}", said.err);
+}
+
+#[test]
+fn what_users_write_is_text_and_no_mark() {
+    let desk = Desk::new();
+    let words =
+        [("name = \"sphere\"", "name = \"o`d|d\""), ("summary = \"a ball", "summary = \"a `ball` *of* <b>")];
+    desk.write("odd.toml", built_in("sphere", &words));
+    assert_eq!(desk.run("compare odd.toml --seeds 1 -o study").code, 0);
+    let summary = desk.read("study/summary.md");
+    assert!(summary.contains("\n## o\\`d\\|d\n"), "{summary}");
+    assert!(summary.contains("a \\`ball\\` \\*of\\* \\<b\\>"), "{summary}");
 }
