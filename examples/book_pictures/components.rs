@@ -175,7 +175,8 @@ pub fn picture(problems: &[(&str, Scenario)], seed: u64) -> Result<String, Box<d
         let said = format!("{title}: {} components, largest {}", sizes.len(), sizes[0].1);
         let left = SIDE * k as f64;
         text += &format!(
-            "<g transform=\"translate({:.0} {:.0})\">\n<text y=\"{:.0}\" text-anchor=\"middle\">{said}</text>\n",
+            "<g transform=\"translate({:.0} {:.0})\">\n\
+             <text y=\"{:.0}\" text-anchor=\"middle\">{said}</text>\n",
             left + 0.5 * SIDE,
             0.5 * SIDE + 5.0,
             0.5 * SIDE + 22.0

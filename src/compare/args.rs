@@ -36,15 +36,15 @@ regrasp compare --merge part1 part2 part3 -o study")]
 pub struct CompareArgs {
     /// Scenario files, or names of built-in scenarios.
     pub scenarios: Vec<String>,
-    /// Add the paper's three problems (`paper`), these with five pairs of given grasps each (`strict`), harder
-    /// ones after them (`harder`), or every built-in scenario (`all`).
+    /// Add the paper's three problems (`paper`), these with five pairs of given grasps each (`strict`),
+    /// harder ones after them (`harder`), or every built-in scenario (`all`).
     #[arg(long, value_name = "paper|strict|harder|all", value_parser = suite)]
     pub suite: Option<Suite>,
     /// Take scenarios and variants from a study file.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scenarios", "suite", "vary"])]
     pub study: Option<PathBuf>,
-    /// Compare these plugins in a slot, `ID` or `ID{KEY=VALUE,…}`, these values of a setting, or presets; can be
-    /// repeated.
+    /// Compare these plugins in a slot, `ID` or `ID{KEY=VALUE,…}`, these values of a setting, or presets; can
+    /// be repeated.
     #[arg(long, value_name = "SLOT[.KEY]=A,B…")]
     pub vary: Vec<String>,
     /// Plan each problem with this many seeds [default: 20].

@@ -17,9 +17,9 @@ pub struct SearchPolicy {
     /// 1).
     #[schemars(range(min = 1, max = 1000))]
     pub start_grasps: usize,
-    /// Grasps that are looked for at a goal given by its pose alone before the search starts: a grasp costs a
-    /// hundredth of a plan, and the paper's problems need fewer nodes, regrasps and instructions with six
-    /// than with two or twelve. The paper is given one.
+    /// Grasps that are looked for at a goal given by its pose alone before the search starts; a grasp costs
+    /// little against a plan, and with several the cube's turns need fewer regrasps
+    /// (`studies/departures.toml`). The paper is given one.
     #[schemars(range(min = 1, max = 1000))]
     pub goal_grasps: usize,
     /// Samples after which another grasp is looked for at such a goal; 0 means never. In the paper goals stay

@@ -182,7 +182,7 @@ mod tests {
         assert_eq!(part(2, 0..3), "ball|new|8 of 24");
         let text = search_markdown(&rows);
         assert!(
-            text.contains("`rlg` |") && text.contains("  the paper, means |") && text.contains("GS\\_n"),
+            text.contains("`rlg` |") && text.contains("| the paper, means |") && text.contains("GS\\_n"),
             "{text}"
         );
     }
