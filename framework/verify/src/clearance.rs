@@ -321,8 +321,8 @@ impl<'s> ClearanceCheck<'s> {
     }
 
     /// A lower bound of a pair's distance at a sample (m) that is cheap: from balls or boxes around both, or
-    /// a plane between object and segment; between rods and balls the distance itself. Stops at the first above
-    /// `floor`.
+    /// a plane between object and segment; between rods and balls the distance itself. Stops at the first
+    /// above `floor`.
     fn bound(&mut self, pair: usize, sample: usize, seen: Samples<'_>, floor: f64) -> f64 {
         let frames = &seen.frames[sample];
         let balls = self.bounds.balls(pair, frames);
