@@ -79,12 +79,25 @@ impl<'s> ClearanceCheck<'s> {
 
     /// The smallest distance of a pair at a state (m), or the one known where none is smaller there.
     pub(crate) fn glance(&mut self, leg: &Leg<'_>, frames: &Frames) -> f64 {
-        for pair in 0..self.scene.pairs.len() {
-            if self.compared(leg, pair) && self.bounds.balls(pair, frames) < self.smallest {
+        let turns = self.turns(leg, frames);
+        for &(bound, pair) in &turns {
+            if bound < self.smallest {
                 self.smallest = self.smallest.min(self.exact(pair, frames, true));
             }
         }
+        self.turns = turns;
         self.smallest
+    }
+
+    /// The pairs that are compared with their bounds, the likeliest to be closest first: one exact distance
+    /// then spares most of the others.
+    fn turns(&mut self, leg: &Leg<'_>, frames: &Frames) -> Vec<(f64, usize)> {
+        let mut turns = std::mem::take(&mut self.turns);
+        turns.clear();
+        let pairs = (0..self.scene.pairs.len()).filter(|&pair| self.compared(leg, pair));
+        turns.extend(pairs.map(|pair| (self.bounds.balls(pair, frames), pair)));
+        turns.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        turns
     }
 
     /// Takes in a stretch's first state: every pair anew, also whether one body lies inside the other.
@@ -168,8 +181,8 @@ impl<'s> ClearanceCheck<'s> {
         self.span(step, (middle, half_way), to, seen)
     }
 
-    /// Carries a pair's bound from the sample before to `sample`, with a new distance where the bound there is
-    /// not enough.
+    /// Carries a pair's bound from the sample before to `sample`, with a new distance where the bound there
+    /// is not enough.
     fn sample(
         &mut self,
         step: Step<'_, '_>,
@@ -260,16 +273,7 @@ impl<'s> ClearanceCheck<'s> {
                 touch.filter(|_| !self.scene.has_twin()).map_or(ANYWHERE, |touch| touch.facet),
             );
         }
-        let mut turns = std::mem::take(&mut self.turns);
-        turns.clear();
-        let pairs = 0..self.scene.pairs.len();
-        turns.extend(
-            pairs
-                .filter(|&pair| self.compared(leg, pair))
-                .map(|pair| (self.bounds.balls(pair, frames), pair)),
-        );
-        // The likeliest first: one exact distance then spares most of the others.
-        turns.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let turns = self.turns(leg, frames);
         let mut closest: Option<(f64, usize)> = None;
         for &(bound, pair) in &turns {
             let least = closest.map_or(f64::INFINITY, |(distance, _)| distance);
@@ -316,9 +320,9 @@ impl<'s> ClearanceCheck<'s> {
         Some(cores - first.radius - second.radius)
     }
 
-    /// A lower bound of a pair's distance at a sample (m) that is cheap: from balls or boxes around both, or a
-    /// plane between object and segment; between rods and balls the distance itself. Stops at the first above
-    /// `floor`.
+    /// A lower bound of a pair's distance at a sample (m) that is cheap: from balls or boxes around both, or
+    /// a plane between object and segment; between rods and balls the distance itself. Stops at the first
+    /// above `floor`.
     fn bound(&mut self, pair: usize, sample: usize, seen: Samples<'_>, floor: f64) -> f64 {
         let frames = &seen.frames[sample];
         let balls = self.bounds.balls(pair, frames);
@@ -339,8 +343,8 @@ impl<'s> ClearanceCheck<'s> {
     }
 
     /// A lower bound of a pair's distance at two samples and all the time between (m), where one of them is a
-    /// rod or a ball and the other one does not move, or is the object: by what does not bend between samples,
-    /// and how far the rod may be from its straight way.
+    /// rod or a ball and the other one does not move, or is the object: by what does not bend between
+    /// samples, and how far the rod may be from its straight way.
     fn bound_during(&mut self, pair: usize, span: (usize, usize), seen: Samples<'_>, floor: f64) -> f64 {
         let (a, b) = self.scene.pairs[pair];
         let (first, second) = (&self.scene.bodies[a], &self.scene.bodies[b]);

@@ -91,8 +91,8 @@ impl Motions {
     /// The largest |r''| of the ends of a body as seen from the object, which are at `before` at first (time
     /// in samples).
     ///
-    /// With r = Rᵀ (p - x), the object turning at an even ω and shifting at an even x', |r''| ≤ |p''| + 2 ω |p'
-    /// - x'| + ω² |p - x|.
+    /// With r = Rᵀ (p - x), the object turning at an even ω and shifting at an even x',
+    /// |r''| ≤ |p''| + 2 ω |p' - x'| + ω² |p - x|.
     fn bend_seen(&self, body: usize, before: &[Vec3; 2], duration: f64) -> f64 {
         let relative = self.in_hand[body] + self.shift;
         let far = before[0].norm().max(before[1].norm()) + relative * duration;

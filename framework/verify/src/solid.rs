@@ -2,7 +2,6 @@
 
 use crate::border::{segment, vector};
 use crate::outer::Outer;
-use crate::supported::highest;
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::partitioning::BvhNode;
 use parry3d_f64::query::details::closest_points_segment_segment;
@@ -223,6 +222,21 @@ impl Solid {
         };
         self.surface().bvh().find_best(f64::MAX, bound, leaf).map_or(f64::INFINITY, |(_, lowest)| -lowest)
     }
+}
+
+/// The largest of `n · v` over vertices.
+pub(crate) fn highest(vertices: &[Vec3], n: &Vec3) -> f64 {
+    // Four at a time, which wait for nothing.
+    let mut most = [f64::NEG_INFINITY; 4];
+    let mut chunks = vertices.chunks_exact(4);
+    for four in &mut chunks {
+        for (most, v) in most.iter_mut().zip(four) {
+            let height = n.dot(v);
+            *most = if height > *most { height } else { *most };
+        }
+    }
+    let rest = chunks.remainder().iter().map(|v| n.dot(v));
+    most.into_iter().chain(rest).fold(f64::NEG_INFINITY, f64::max)
 }
 
 impl Gap {

@@ -1,6 +1,6 @@
-//! How far the object reaches in a direction, where each direction asked about is hardly another than the last.
+//! How far the object reaches in a direction, where each one asked about is hardly another than the last.
 
-use crate::solid::Solid;
+use crate::solid::{Solid, highest};
 use regrasp_api::Vec3;
 
 /// Within this of a direction (the length of the difference) the outermost vertex is one of those kept.
@@ -46,21 +46,6 @@ impl Supported {
         }
         highest(&self.vertices, n_O)
     }
-}
-
-/// The largest of `n · v` over vertices.
-pub(crate) fn highest(vertices: &[Vec3], n: &Vec3) -> f64 {
-    // Four at a time, which wait for nothing.
-    let mut most = [f64::NEG_INFINITY; 4];
-    let mut chunks = vertices.chunks_exact(4);
-    for four in &mut chunks {
-        for (most, v) in most.iter_mut().zip(four) {
-            let height = n.dot(v);
-            *most = if height > *most { height } else { *most };
-        }
-    }
-    let rest = chunks.remainder().iter().map(|v| n.dot(v));
-    most.into_iter().chain(rest).fold(f64::NEG_INFINITY, f64::max)
 }
 
 #[cfg(test)]

@@ -38,6 +38,9 @@ const MOST_REFINEMENTS: usize = 24;
 /// Where the best force raises a bound by no more than this part of it, none is sought any more.
 const ENOUGH: f64 = 1e-3;
 
+/// Grasps of smallest margin that the general solver is asked about, too.
+const MOST_POLISHES: usize = 4;
+
 /// The part of the solver's slack below which a carried force is no longer taken: the best one at this grasp
 /// may be far better.
 const DWINDLED: f64 = 0.4;
@@ -63,23 +66,30 @@ pub(crate) struct StabilityCheck {
 struct Margin {
     contacts: Vec<Contact>,
     lower: f64,
-    /// What proves more than `lower`, as long as that is a rough bound.
-    rough: Option<Proof>,
+    /// What may prove more than `lower`, which is a rough bound as long as there are any.
+    rough: Vec<Proof>,
+    /// Whether the general solver has had its say.
+    is_polished: bool,
     place: Place,
 }
 
 impl Margin {
-    /// Makes a rough bound as good as its proof; whether it was one.
+    /// Makes a rough bound as good as its proofs; whether it was one.
     fn settle(&mut self) -> bool {
-        let Some(proof) = self.rough.take() else { return false };
-        self.lower = self.lower.max(force::margin(&self.contacts, &proof));
-        true
+        let proofs = std::mem::take(&mut self.rough);
+        for proof in &proofs {
+            self.lower = self.lower.max(force::margin(&self.contacts, proof));
+        }
+        !proofs.is_empty()
     }
 
-    /// Raises the bound by a proof of another grasp, where it proves more.
-    fn sharpen(&mut self, proof: &Proof) {
-        if let Some(proof) = force::prove(&self.contacts, &proof.forces) {
-            self.lower = self.lower.max(force::margin(&self.contacts, &proof));
+    /// Raises the bound by a proof of another grasp, where it proves more; roughly where `enough` is passed.
+    fn sharpen(&mut self, proof: &Proof, enough: f64) {
+        let Some(proof) = force::prove(&self.contacts, &proof.forces) else { return };
+        self.lower = self.lower.max(force::rough_margin(&self.contacts, &proof));
+        self.rough.push(proof);
+        if self.lower < enough {
+            self.settle();
         }
     }
 }
@@ -165,16 +175,18 @@ impl StabilityCheck {
                 self.carried = Some(proof);
                 self.gauge.note(proof.slack, place);
                 if sample.is_multiple_of(SAMPLES) {
-                    let (lower, rough) = (force::rough_margin(&contacts, &proof), Some(proof));
+                    let (lower, rough) = (force::rough_margin(&contacts, &proof), vec![proof]);
                     let place = leg.at(state + sample / SAMPLES);
-                    self.margins.push(Margin { contacts, lower, rough, place });
+                    self.margins.push(Margin { contacts, lower, rough, is_polished: false, place });
                 }
             }
             Err(slack) => {
                 self.carried = None;
                 self.failures += 1;
                 self.gauge.note(slack, place);
-                self.margins.push(Margin { contacts: vec![], lower: 0.0, rough: None, place: place() });
+                let place = place();
+                let (contacts, rough) = (vec![], vec![]);
+                self.margins.push(Margin { contacts, lower: 0.0, rough, is_polished: true, place });
             }
         }
     }
@@ -235,7 +247,8 @@ impl StabilityCheck {
             return Some(last.lower);
         }
         let lower = best(&contacts).map_or(0.0, |proof| force::margin(&contacts, &proof));
-        self.margins.push(Margin { contacts, lower, rough: None, place: Place::default() });
+        let (rough, place) = (vec![], Place::default());
+        self.margins.push(Margin { contacts, lower, rough, is_polished: false, place });
         Some(lower)
     }
 
@@ -270,10 +283,17 @@ impl StabilityCheck {
                 break;
             }
             for other in self.margins.iter_mut().filter(|other| other.lower < refined) {
-                other.settle();
-                if other.lower < refined {
-                    other.sharpen(&proof);
-                }
+                other.sharpen(&proof, refined);
+            }
+        }
+        // Two good forces differ in what they prove by the root of the solvers' precision: the better counts.
+        for _ in 0..MOST_POLISHES {
+            let worst = smallest(&mut self.margins)?;
+            if std::mem::replace(&mut worst.is_polished, true) {
+                break;
+            }
+            if let Ok(proof) = solved(&worst.contacts) {
+                worst.lower = worst.lower.max(force::margin(&worst.contacts, &proof));
             }
         }
         let worst = smallest(&mut self.margins)?;

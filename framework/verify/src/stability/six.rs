@@ -1,5 +1,7 @@
 //! Symmetric matrices of six rows: the inner step of every proof, in loops that the compiler unrolls.
 
+#![allow(clippy::needless_range_loop)] // rows and columns of matrices
+
 use nalgebra::{Matrix6, Vector6};
 use regrasp_api::Vec3;
 
