@@ -305,3 +305,36 @@ pub fn notes(tally: &Tally) -> String {
     }
     table.text()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use regrasp::Stopwatch;
+
+    /// What is said of a run whose plan has a joint moved in the middle of its first segment with or without
+    /// a finger that moves.
+    fn said_of_damage(regrasps: bool) -> String {
+        let scenario = regrasp::load("sphere").unwrap();
+        let setup = regrasp::setup(&scenario).unwrap();
+        let clock = Stopwatch::start();
+        let options = clock.options(0);
+        let mut run = setup.run(&options).unwrap();
+        let plan = run.plan.as_mut().unwrap();
+        let segment = plan.segments.iter_mut().find(|segment| segment.finger.is_some() == regrasps).unwrap();
+        let middle = segment.states.len() / 2;
+        segment.states[middle].joints[usize::from(segment.finger.unwrap_or(0))][1] += 0.05;
+        run.verdict = Some(regrasp::verify::verify_on(plan, 1));
+        let choices = setup.choices();
+        Summary { scenario: &scenario, choices, run: &run, course: None, options: &options, saved: None }
+            .why_not_verified()
+    }
+
+    #[test]
+    fn plugins_whose_segments_fail_are_named() {
+        let (transfer, regrasp) = (said_of_damage(false), said_of_damage(true));
+        let [rolling, rrt] = ["`local-planner/rolling`", "`local-planner/rrt`"].map(str::to_owned);
+        assert!(transfer.contains("--audit") && transfer.contains(&rolling), "{transfer}");
+        assert!(!transfer.contains(&rrt), "{transfer}");
+        assert!(regrasp.contains(&rrt) && !regrasp.contains(&rolling), "{regrasp}");
+    }
+}
