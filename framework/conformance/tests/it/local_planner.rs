@@ -1,7 +1,7 @@
 //! For each law of local planners, in each of their slots, one liar that breaks it and no other.
 use crate::support;
 
-use crate::support::blind::{AnyGrasp, FewBodies, LonelyFingers, wide};
+use crate::support::blind::{AnyGrasp, Blinkered, is_of_fingers, is_of_object, wide};
 use crate::support::slide::{slide_along, way};
 use regrasp_api::*;
 use regrasp_conformance::reference::{EdgeClosure, FineRolling, GraspLine, LiftOver};
@@ -236,8 +236,9 @@ impl LocalPlanner for Liar {
     ) -> Result<Reached, CallError> {
         let mut other = *task;
         let object_counts = self.slot == Slot::RegraspPlanner;
-        let few = FewBodies { true_one: task.clearance, object_counts };
-        let lonely = LonelyFingers(task.clearance);
+        let sees: fn(&BodyPair) -> bool = if object_counts { is_of_object } else { |_| false };
+        let few = Blinkered { all: task.clearance, sees };
+        let lonely = Blinkered { all: task.clearance, sees: |pair| !is_of_fingers(pair) };
         let low = Resolution { lift: 9e-4, clearance: 2e-4, ..*task.resolution };
         match self.lie {
             Lie::WiderLimits => other.hand = self.wide.as_ref().unwrap(),

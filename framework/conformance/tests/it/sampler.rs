@@ -1,5 +1,6 @@
 //! For each law of samplers one liar that breaks it and no other.
 use crate::support;
+use crate::support::blind::{Blinkered, is_of_object};
 
 use regrasp_api::*;
 use regrasp_conformance::reference::RejectionSampler;
@@ -60,42 +61,6 @@ impl Admissible for AnyGrasp<'_> {
         _: &mut Context<'_>,
     ) -> Result<Option<Reason>, CallError> {
         Ok(None)
-    }
-}
-
-/// Sees no collision of the object with what stands still.
-struct Ghost<'a>(&'a dyn Clearance);
-
-impl Clearance for Ghost<'_> {
-    fn object_free(&self, _: &Pose) -> Result<(), BodyPair> {
-        Ok(())
-    }
-    fn finger_free(
-        &self,
-        finger: FingerIndex,
-        joints: &FingerJoints,
-        X_HO: &Pose,
-        tip: TipRule,
-    ) -> Result<(), BodyPair> {
-        self.0.finger_free(finger, joints, X_HO, tip)
-    }
-    fn fingers_free(
-        &self,
-        a: (FingerIndex, &FingerJoints),
-        b: (FingerIndex, &FingerJoints),
-    ) -> Result<(), BodyPair> {
-        self.0.fingers_free(a, b)
-    }
-    fn configuration_free(
-        &self,
-        q: &Configuration,
-        moved: FingerSet,
-        object_moved: bool,
-    ) -> Result<(), BodyPair> {
-        self.0.configuration_free(q, moved, object_moved)
-    }
-    fn distances(&self, q: &Configuration, within: f64) -> Vec<PairDistance> {
-        self.0.distances(q, within)
     }
 }
 
@@ -209,7 +174,15 @@ impl ClosedChainSampler for Liar {
         let mut task = *task;
         let any = AnyGrasp(task.admissible);
         let mut own = Context::new(context.random.clone(), &Uninterrupted);
-        let (ghost, half) = (Ghost(task.clearance), Half(task.surface));
+        // The object passes through what stands still.
+        let sees = |pair: &BodyPair| {
+            !is_of_object(pair)
+                || matches!(
+                    pair,
+                    (Body::Fingertip(_) | Body::Link(..), _) | (_, Body::Fingertip(_) | Body::Link(..))
+                )
+        };
+        let (ghost, half) = (Blinkered { all: task.clearance, sees }, Half(task.surface));
         let mut pose = pose;
         if let Some(X_HO) = misdrawn(self.lie, &task, pose, &mut context.random) {
             pose = PoseRequest::At(X_HO);

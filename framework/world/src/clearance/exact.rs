@@ -80,7 +80,8 @@ impl MeshSolid {
         if projection.is_inside { -distance } else { distance }
     }
 
-    /// The same, where the facet `near` is likely to be close to the point: it becomes the closest one.
+    /// The same (m), at most `limit` (m) as is known, where the facet `near` is likely to be close to the
+    /// point: it becomes the closest one.
     pub fn signed_distance_near(&self, p: &Vec3, limit: f64, near: &mut u32) -> f64 {
         let point = to_glam(p);
         // A facet's own distance is a bound that leaves little of the rest to be looked at.

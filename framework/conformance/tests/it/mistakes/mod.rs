@@ -8,8 +8,7 @@ mod strategy;
 mod surface;
 mod transfer;
 
-use regrasp_api::{BodyPair, Clearance, Configuration, Entry, FingerIndex, FingerJoints, FingerSet};
-use regrasp_api::{PairDistance, Pose, Settings, TipRule};
+use regrasp_api::{Entry, Settings};
 use regrasp_conformance::{Demands, check_with};
 
 /// The settings of a plugin with a mistake.
@@ -53,49 +52,4 @@ fn judge(entry: &Entry, mistakes: &[(&str, &str)]) {
     }
     assert!(missed.is_empty(), "{missed}");
     check_with(entry, &Demands::default()).assert_passes();
-}
-
-/// A clearance that looks at some pairs of bodies alone.
-struct Blinkered<'a> {
-    all: &'a dyn Clearance,
-    sees: fn(&BodyPair) -> bool,
-}
-
-impl Blinkered<'_> {
-    fn judge(&self, found: Result<(), BodyPair>) -> Result<(), BodyPair> {
-        found.or_else(|pair| if (self.sees)(&pair) { Err(pair) } else { Ok(()) })
-    }
-}
-
-impl Clearance for Blinkered<'_> {
-    fn object_free(&self, X_HO: &Pose) -> Result<(), BodyPair> {
-        self.judge(self.all.object_free(X_HO))
-    }
-    fn finger_free(
-        &self,
-        finger: FingerIndex,
-        joints: &FingerJoints,
-        X_HO: &Pose,
-        tip: TipRule,
-    ) -> Result<(), BodyPair> {
-        self.judge(self.all.finger_free(finger, joints, X_HO, tip))
-    }
-    fn fingers_free(
-        &self,
-        a: (FingerIndex, &FingerJoints),
-        b: (FingerIndex, &FingerJoints),
-    ) -> Result<(), BodyPair> {
-        self.judge(self.all.fingers_free(a, b))
-    }
-    fn configuration_free(
-        &self,
-        q: &Configuration,
-        moved: FingerSet,
-        object_moved: bool,
-    ) -> Result<(), BodyPair> {
-        self.judge(self.all.configuration_free(q, moved, object_moved))
-    }
-    fn distances(&self, q: &Configuration, limit: f64) -> Vec<PairDistance> {
-        self.all.distances(q, limit).into_iter().filter(|found| (self.sees)(&found.pair)).collect()
-    }
 }

@@ -1,5 +1,6 @@
 //! Mistakes of planners that move one finger.
 
+use crate::support::blind::{Blinkered, is_of_fingers};
 use regrasp_api::*;
 use regrasp_conformance::reference::LiftOver;
 
@@ -24,10 +25,7 @@ impl Mistaken {
             "no-obstacles" => |pair| !matches!(pair, (Body::Obstacle(_), _) | (_, Body::Obstacle(_))),
             "no-palm" => |pair| !matches!(pair, (Body::Palm, _) | (_, Body::Palm)),
             "fingertips-alone" => |pair| !matches!(pair, (Body::Link(..), _) | (_, Body::Link(..))),
-            "no-other-fingers" => |pair| {
-                use Body::{Fingertip, Link};
-                !matches!(pair, (Fingertip(_) | Link(..), Fingertip(_) | Link(..)))
-            },
+            "no-other-fingers" => |pair| !is_of_fingers(pair),
             // What an author forgets who thinks of the finger as a point: links against one thing each.
             "links-through-the-object" => |pair| !is_link_and(pair, |body| matches!(body, Body::Object)),
             "links-through-obstacles" => |pair| !is_link_and(pair, |body| matches!(body, Body::Obstacle(_))),
@@ -105,7 +103,7 @@ impl LocalPlanner for Mistaken {
         context: &mut Context<'_>,
     ) -> Result<Reached, CallError> {
         let refused = self.refuses(from, to);
-        let clearance = super::Blinkered { all: task.clearance, sees: self.sees() };
+        let clearance = Blinkered { all: task.clearance, sees: self.sees() };
         let low = Resolution { lift: 1.5e-3, ..*task.resolution };
         let resolution = if self.0 == "barely-up" { &low } else { task.resolution };
         let seen = Task { clearance: &clearance, resolution, ..*task };

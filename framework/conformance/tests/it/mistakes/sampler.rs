@@ -1,5 +1,6 @@
 //! Mistakes of samplers.
 
+use crate::support::blind::Blinkered;
 use regrasp_api::*;
 use regrasp_conformance::reference::RejectionSampler;
 
@@ -124,7 +125,7 @@ impl ClosedChainSampler for Mistaken {
                 let sees = |pair: &BodyPair| {
                     !matches!(pair, (Body::Object, Body::Obstacle(_)) | (Body::Obstacle(_), Body::Object))
                 };
-                let clearance = super::Blinkered { all, sees };
+                let clearance = Blinkered { all, sees };
                 let task = Task { clearance: &clearance, ..*task };
                 return RejectionSampler.sample(&task, pose, holding, context);
             }

@@ -1,5 +1,6 @@
 //! Mistakes of planners that roll the object.
 
+use crate::support::blind::Blinkered;
 use regrasp_api::*;
 use regrasp_conformance::reference::FineRolling;
 use std::collections::BTreeMap;
@@ -115,7 +116,7 @@ impl LocalPlanner for Mistaken {
         path: Option<&mut Path>,
         context: &mut Context<'_>,
     ) -> Result<Reached, CallError> {
-        let clearance = super::Blinkered { all: task.clearance, sees: self.sees() };
+        let clearance = Blinkered { all: task.clearance, sees: self.sees() };
         let unspun = Unspun(task.contact_model);
         let mut seen = Task { clearance: &clearance, ..*task };
         if self.mistake == "cones-at-rest" {

@@ -1,4 +1,4 @@
-//! What liars among local planners see of a task: too little.
+//! What liars and careless authors see of a task: too little.
 
 use regrasp_api::*;
 use regrasp_conformance::fixtures::{four_finger, free_fingertips, three_finger};
@@ -20,24 +20,21 @@ pub fn wide(hand: &dyn Hand) -> ChainHand {
     ChainHand::new(description).unwrap()
 }
 
-/// Sees nothing but what touches the object in a regrasp, and nothing at all otherwise.
-pub struct FewBodies<'a> {
-    pub true_one: &'a dyn Clearance,
-    pub object_counts: bool,
+/// A clearance that looks at some pairs of bodies alone.
+pub struct Blinkered<'a> {
+    pub all: &'a dyn Clearance,
+    pub sees: fn(&BodyPair) -> bool,
 }
 
-impl FewBodies<'_> {
+impl Blinkered<'_> {
     fn judge(&self, found: Result<(), BodyPair>) -> Result<(), BodyPair> {
-        found.or_else(|pair| {
-            let object = pair.0 == Body::Object || pair.1 == Body::Object;
-            if object && self.object_counts { Err(pair) } else { Ok(()) }
-        })
+        found.or_else(|pair| if (self.sees)(&pair) { Err(pair) } else { Ok(()) })
     }
 }
 
-impl Clearance for FewBodies<'_> {
+impl Clearance for Blinkered<'_> {
     fn object_free(&self, X_HO: &Pose) -> Result<(), BodyPair> {
-        self.judge(self.true_one.object_free(X_HO))
+        self.judge(self.all.object_free(X_HO))
     }
     fn finger_free(
         &self,
@@ -46,14 +43,14 @@ impl Clearance for FewBodies<'_> {
         X_HO: &Pose,
         tip: TipRule,
     ) -> Result<(), BodyPair> {
-        self.judge(self.true_one.finger_free(finger, joints, X_HO, tip))
+        self.judge(self.all.finger_free(finger, joints, X_HO, tip))
     }
     fn fingers_free(
         &self,
         a: (FingerIndex, &FingerJoints),
         b: (FingerIndex, &FingerJoints),
     ) -> Result<(), BodyPair> {
-        self.judge(self.true_one.fingers_free(a, b))
+        self.judge(self.all.fingers_free(a, b))
     }
     fn configuration_free(
         &self,
@@ -61,50 +58,22 @@ impl Clearance for FewBodies<'_> {
         moved: FingerSet,
         object_moved: bool,
     ) -> Result<(), BodyPair> {
-        self.judge(self.true_one.configuration_free(q, moved, object_moved))
+        self.judge(self.all.configuration_free(q, moved, object_moved))
     }
-    fn distances(&self, _: &Configuration, _: f64) -> Vec<PairDistance> {
-        Vec::new()
+    fn distances(&self, q: &Configuration, limit: f64) -> Vec<PairDistance> {
+        self.all.distances(q, limit).into_iter().filter(|found| (self.sees)(&found.pair)).collect()
     }
 }
 
-/// Sees no collision of fingers with each other.
-pub struct LonelyFingers<'a>(pub &'a dyn Clearance);
+/// Whether a pair is of the object and something else.
+pub fn is_of_object(pair: &BodyPair) -> bool {
+    pair.0 == Body::Object || pair.1 == Body::Object
+}
 
-impl Clearance for LonelyFingers<'_> {
-    fn object_free(&self, X_HO: &Pose) -> Result<(), BodyPair> {
-        self.0.object_free(X_HO)
-    }
-    fn finger_free(
-        &self,
-        finger: FingerIndex,
-        joints: &FingerJoints,
-        X_HO: &Pose,
-        tip: TipRule,
-    ) -> Result<(), BodyPair> {
-        self.0.finger_free(finger, joints, X_HO, tip)
-    }
-    fn fingers_free(
-        &self,
-        _: (FingerIndex, &FingerJoints),
-        _: (FingerIndex, &FingerJoints),
-    ) -> Result<(), BodyPair> {
-        Ok(())
-    }
-    fn configuration_free(
-        &self,
-        q: &Configuration,
-        moved: FingerSet,
-        object_moved: bool,
-    ) -> Result<(), BodyPair> {
-        self.0.configuration_free(q, moved, object_moved).or_else(|pair| match pair {
-            (Body::Object | Body::Palm, _) | (_, Body::Object | Body::Palm) => Err(pair),
-            _ => Ok(()),
-        })
-    }
-    fn distances(&self, q: &Configuration, within: f64) -> Vec<PairDistance> {
-        self.0.distances(q, within)
-    }
+/// Whether a pair is of bodies of fingers.
+pub fn is_of_fingers(pair: &BodyPair) -> bool {
+    use Body::{Fingertip, Link};
+    matches!(pair, (Fingertip(_) | Link(..), Fingertip(_) | Link(..)))
 }
 
 /// Takes every grasp for stable.
