@@ -12,6 +12,8 @@ use regrasp_api::{
 use regrasp_plan::Segment;
 use std::f64::consts::PI;
 
+/// How many threads one relay keeps busy, more or less.
+const BUSY: usize = 4;
 /// How far (rad) a way round may turn away from the straight one half-way. Our choice.
 const ASIDE: f64 = 0.8;
 
@@ -57,7 +59,8 @@ impl Run<'_> {
         };
         let (session, task, from) = (&self.session, &self.task, self.graph.node(start));
         let (poses, turn_length) = (&self.poses[leg..], self.request.object.mesh.radius());
-        let tried = session.ahead(count, |number| {
+        let many = session.threads().div_ceil(BUSY);
+        let tried = session.ahead_by(many, count, |number| {
             session.counted(task, (Call::Relay, leg as u64, number as u64), |work| {
                 let route = route(poses, number, task.workspace, turn_length, &mut work.context.random);
                 relay(work, from, &route, &effort)

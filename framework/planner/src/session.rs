@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use regrasp_api::{
     CallError, ClosedChainSampler, Context, GraphStrategy, Interrupt, LocalPlanner, Plugins, Random, Tally,
-    Task, unless_fault,
+    Task, report_fault, take_fault, unless_fault,
 };
 use std::collections::VecDeque;
 
@@ -79,6 +79,7 @@ pub(crate) struct Session<'a> {
 
 /// One call at work: the plugins that it may ask, what it works on, and what it draws from and counts in.
 pub(crate) struct Work<'a> {
+    pub session: Session<'a>,
     pub plugins: Drivers<'a>,
     pub task: &'a Task<'a>,
     pub context: Context<'a>,
@@ -96,7 +97,15 @@ impl<'a> Session<'a> {
     where
         'a: 'w,
     {
-        Work { plugins: self.plugins, task, context: Context::new(self.random(key), self.interrupt) }
+        self.work_drawing(task, self.random(key))
+    }
+
+    fn work_drawing<'w>(&self, task: &'w Task<'w>, random: Random) -> Work<'w>
+    where
+        'a: 'w,
+    {
+        let context = Context::new(random, self.interrupt);
+        Work { session: *self, plugins: self.plugins, task, context }
     }
 
     /// The random stream of the call with this key: it depends on nothing else but the seed.
@@ -105,18 +114,24 @@ impl<'a> Session<'a> {
     }
 
     /// Makes the call with this key, and returns its result with what it counted.
-    ///
-    /// A plugin that panicked where it could not return an error makes the result worthless: then it is that
-    /// panic.
     pub fn counted<T>(
         &self,
         task: &Task<'_>,
         key: Key,
         call: impl FnOnce(&mut Work<'_>) -> Result<T, CallError>,
     ) -> Counted<Result<T, CallError>> {
-        let mut work = self.work(task, key);
-        let result = unless_fault(call(&mut work));
-        Counted { result, tally: work.context.tally }
+        counted(self.work(task, key), call)
+    }
+
+    /// Does one of the parts of a call that know nothing of each other: its random stream depends on a word
+    /// of the call's and on its number.
+    pub fn part<T>(
+        &self,
+        task: &Task<'_>,
+        (word, number): (u64, usize),
+        part: impl FnOnce(&mut Work<'_>) -> Result<T, CallError>,
+    ) -> Counted<Result<T, CallError>> {
+        counted(self.work_drawing(task, Random::from_key(word, number as u64, 0, 0)), part)
     }
 
     /// Ends the run where it should stop.
@@ -133,11 +148,21 @@ impl<'a> Session<'a> {
         count: usize,
         call: impl Fn(usize) -> T + Sync + 's,
     ) -> impl Iterator<Item = T> + 's {
+        self.ahead_by(self.threads(), count, call)
+    }
+
+    /// [`Self::ahead`] by so many at a time.
+    pub fn ahead_by<'s, T: Send + 's>(
+        &'s self,
+        many: usize,
+        count: usize,
+        call: impl Fn(usize) -> T + Sync + 's,
+    ) -> impl Iterator<Item = T> + 's {
         let mut ready = VecDeque::new();
         let mut next = 0;
         std::iter::from_fn(move || {
             if ready.is_empty() && next < count {
-                let end = count.min(next + self.threads());
+                let end = count.min(next + many);
                 ready.extend(self.compute(next..end, &call));
                 next = end;
             }
@@ -148,6 +173,28 @@ impl<'a> Session<'a> {
     /// The results of `call(0), …, call(count - 1)`, computed by the threads there are.
     pub fn draw<T: Send>(&self, count: usize, call: impl Fn(usize) -> T + Sync) -> Vec<T> {
         self.compute(0..count, &call)
+    }
+
+    /// Does `work` on each item, by the threads there are.
+    pub fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Sync) -> Result<(), CallError> {
+        let done = |item| {
+            lent(|| {
+                work(item);
+                Ok(())
+            })
+        };
+        match self.pool {
+            Some(pool) => pool.install(|| items.par_iter_mut().map(done).collect()),
+            None => items.iter_mut().try_for_each(done),
+        }
+    }
+
+    /// Does `work` on one of the threads that there are, which then wait for nobody when parts are computed.
+    pub fn within<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
     }
 
     /// How many threads compute.
@@ -161,6 +208,43 @@ impl<'a> Session<'a> {
             _ => range.map(call).collect(),
         }
     }
+}
+
+impl Work<'_> {
+    /// The results of parts of this call that know nothing of each other, in order, by the threads there are;
+    /// the first error ends the call.
+    pub fn parts<T: Send>(
+        &mut self,
+        count: usize,
+        part: impl Fn(usize, &mut Work<'_>) -> Result<T, CallError> + Sync,
+    ) -> Result<Vec<T>, CallError> {
+        let (session, task, word) = (self.session, self.task, self.context.random.word());
+        let done = session.draw(count, |i| session.part(task, (word, i), |work| part(i, work)));
+        let take = |part: Counted<Result<T, CallError>>| {
+            self.context.tally.add(&part.tally);
+            part.result
+        };
+        done.into_iter().map(take).collect()
+    }
+}
+
+fn counted<T>(
+    mut work: Work<'_>,
+    call: impl FnOnce(&mut Work<'_>) -> Result<T, CallError>,
+) -> Counted<Result<T, CallError>> {
+    let result = lent(|| call(&mut work));
+    Counted { result, tally: work.context.tally }
+}
+
+/// The result of a call on a thread that may have been lent to it while it waits for parts of another call.
+///
+/// A plugin that panicked where it could not return an error makes the result worthless: then it is that
+/// panic. What the other call left on the thread stays there.
+fn lent<T>(call: impl FnOnce() -> Result<T, CallError>) -> Result<T, CallError> {
+    let lender = take_fault();
+    let result = unless_fault(call());
+    lender.into_iter().for_each(report_fault);
+    result
 }
 
 #[cfg(test)]

@@ -41,15 +41,16 @@ impl<'a> Station<'a> {
         effort: &'a Effort,
     ) -> Result<Self, CallError> {
         let looks = Looks::ahead(work.task, route, place);
-        let mut tracks = Vec::new();
-        for finger in q.joints.fingers() {
+        let fingers: Vec<FingerIndex> = q.joints.fingers().collect();
+        let tracks = work.parts(fingers.len(), |i, work| {
+            let finger = fingers[i];
             let own = Touch { contact: q.contacts[finger], joints: q.joints[finger] };
             let mut all = vec![looks.follow(work.task, finger, own)];
             if own.contact.is_some() {
                 all.extend(others(work, &looks, (q, finger), effort)?);
             }
-            tracks.push(all);
-        }
+            Ok(all)
+        })?;
         Ok(Self { q, effort, looks, tracks })
     }
 
@@ -70,14 +71,12 @@ impl<'a> Station<'a> {
                 }
             }
         }
+        let looks = work.parts(picks.len(), |i, work| self.looks_together(work, &picks[i]))?;
         let mut all = Vec::new();
-        for pick in picks {
+        for (pick, looks) in picks.iter().zip(looks).filter(|(_, looks)| *looks > 1) {
             let moved = pick.iter().filter(|(_, track)| **track > 0).count();
-            let looks = self.looks_together(work, &pick)?;
-            if looks > 1 {
-                let q = self.configuration(&pick, 0);
-                all.push(Choice { q, moved, reach: self.looks.places[looks - 1] });
-            }
+            let q = self.configuration(pick, 0);
+            all.push(Choice { q, moved, reach: self.looks.places[looks - 1] });
         }
         all.sort_by_cached_key(|choice| Length(worth(choice.moved, choice.reach)));
         Ok(all)
