@@ -190,7 +190,8 @@ impl Finder {
         for _ in 0..GRASP_CALLS {
             if self.ready.is_empty() {
                 let many = if session.threads() > 1 { AHEAD * session.threads() } else { 1 };
-                self.ready = session.draw(many, |i| self.call(self.calls + i as u64, session, task, choices)).into();
+                self.ready =
+                    session.draw(many, |i| self.call(self.calls + i as u64, session, task, choices)).into();
             }
             let Some(found) = self.ready.pop_front() else { break };
             self.calls += 1;

@@ -6,7 +6,9 @@
 //! more postures; all as long as everything stays clear.
 
 use crate::session::Session;
-use regrasp_api::{CallError, Configuration, FingerIndex, FingerJoints, FingerSet, LoneFinger, Task, TipRule};
+use regrasp_api::{
+    CallError, Configuration, FingerIndex, FingerJoints, FingerSet, LoneFinger, Task, TipRule,
+};
 use regrasp_plan::{Segment, SegmentKind};
 
 /// Rounds of averaging that are tried in turn until one leaves the way free. Our choice: n rounds even out

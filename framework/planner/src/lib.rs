@@ -38,6 +38,7 @@ mod run;
 mod search;
 mod segments;
 mod session;
+mod share;
 mod shortest_path;
 mod smooth;
 mod solve;

@@ -60,7 +60,7 @@ impl Run<'_> {
         let (session, task, from) = (&self.session, &self.task, self.graph.node(start));
         let (poses, turn_length) = (&self.poses[leg..], self.request.object.mesh.radius());
         let many = session.threads().div_ceil(BUSY);
-        let tried = session.ahead_by(many, count, |number| {
+        let tried = session.until_found(many, count, |session, number| {
             session.counted(task, (Call::Relay, leg as u64, number as u64), |work| {
                 let route = route(poses, number, task.workspace, turn_length, &mut work.context.random);
                 relay(work, from, &route, &effort)

@@ -1,11 +1,10 @@
-//! What one run shares: the plugins, the keyed random streams, the threads that compute ahead.
+//! What one run shares: the plugins, the keyed random streams, the threads.
 
-use rayon::prelude::*;
+use crate::share::lent;
 use regrasp_api::{
     CallError, ClosedChainSampler, Context, GraphStrategy, Interrupt, LocalPlanner, Plugins, Random, Tally,
-    Task, report_fault, take_fault, unless_fault,
+    Task,
 };
-use std::collections::VecDeque;
 
 /// The plugins that drive the search; contact model, stability test and surface are in the [`Task`].
 #[derive(Clone, Copy)]
@@ -138,94 +137,6 @@ impl<'a> Session<'a> {
     pub fn proceed(&self) -> Result<(), CallError> {
         Context::new(Random::from_key(0, 0, 0, 0), self.interrupt).proceed()
     }
-
-    /// The results of `call(0), call(1), …` in order, computed ahead by the threads there are.
-    ///
-    /// The caller may stop anywhere: with one thread nothing beyond that was computed, with several it is
-    /// thrown away.
-    pub fn ahead<'s, T: Send + 's>(
-        &'s self,
-        count: usize,
-        call: impl Fn(usize) -> T + Sync + 's,
-    ) -> impl Iterator<Item = T> + 's {
-        self.ahead_by(self.threads(), count, call)
-    }
-
-    /// [`Self::ahead`] by so many at a time.
-    pub fn ahead_by<'s, T: Send + 's>(
-        &'s self,
-        many: usize,
-        count: usize,
-        call: impl Fn(usize) -> T + Sync + 's,
-    ) -> impl Iterator<Item = T> + 's {
-        let mut ready = VecDeque::new();
-        let mut next = 0;
-        std::iter::from_fn(move || {
-            if ready.is_empty() && next < count {
-                let end = count.min(next + many);
-                ready.extend(self.compute(next..end, &call));
-                next = end;
-            }
-            ready.pop_front()
-        })
-    }
-
-    /// The results of `call(0), …, call(count - 1)`, computed by the threads there are.
-    pub fn draw<T: Send>(&self, count: usize, call: impl Fn(usize) -> T + Sync) -> Vec<T> {
-        self.compute(0..count, &call)
-    }
-
-    /// Does `work` on each item, by the threads there are.
-    pub fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Sync) -> Result<(), CallError> {
-        let done = |item| {
-            lent(|| {
-                work(item);
-                Ok(())
-            })
-        };
-        match self.pool {
-            Some(pool) => pool.install(|| items.par_iter_mut().map(done).collect()),
-            None => items.iter_mut().try_for_each(done),
-        }
-    }
-
-    /// Does `work` on one of the threads that there are, which then wait for nobody when parts are computed.
-    pub fn within<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        match self.pool {
-            Some(pool) => pool.install(work),
-            None => work(),
-        }
-    }
-
-    /// How many threads compute.
-    pub fn threads(&self) -> usize {
-        self.pool.map_or(1, rayon::ThreadPool::current_num_threads)
-    }
-
-    fn compute<T: Send>(&self, range: std::ops::Range<usize>, call: &(impl Fn(usize) -> T + Sync)) -> Vec<T> {
-        match self.pool {
-            Some(pool) if range.len() > 1 => pool.install(|| range.into_par_iter().map(call).collect()),
-            _ => range.map(call).collect(),
-        }
-    }
-}
-
-impl Work<'_> {
-    /// The results of parts of this call that know nothing of each other, in order, by the threads there are;
-    /// the first error ends the call.
-    pub fn parts<T: Send>(
-        &mut self,
-        count: usize,
-        part: impl Fn(usize, &mut Work<'_>) -> Result<T, CallError> + Sync,
-    ) -> Result<Vec<T>, CallError> {
-        let (session, task, word) = (self.session, self.task, self.context.random.word());
-        let done = session.draw(count, |i| session.part(task, (word, i), |work| part(i, work)));
-        let take = |part: Counted<Result<T, CallError>>| {
-            self.context.tally.add(&part.tally);
-            part.result
-        };
-        done.into_iter().map(take).collect()
-    }
 }
 
 fn counted<T>(
@@ -236,23 +147,12 @@ fn counted<T>(
     Counted { result, tally: work.context.tally }
 }
 
-/// The result of a call on a thread that may have been lent to it while it waits for parts of another call.
-///
-/// A plugin that panicked where it could not return an error makes the result worthless: then it is that
-/// panic. What the other call left on the thread stays there.
-fn lent<T>(call: impl FnOnce() -> Result<T, CallError>) -> Result<T, CallError> {
-    let lender = take_fault();
-    let result = unless_fault(call());
-    lender.into_iter().for_each(report_fault);
-    result
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use regrasp_api::{
-        Action, Configuration, Contact, FingerSet, GraphView, Path, PerFinger, Pose, PoseRequest, Reached,
-        Target, Uninterrupted,
+        Action, CallError::Interrupted, Configuration, Contact, FingerSet, GraphView, Path, PerFinger, Pose,
+        PoseRequest, Reached, Target, Uninterrupted, report_fault, take_fault,
     };
     use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -323,6 +223,37 @@ mod tests {
         let session = session(None);
         let taken = session.ahead(10, |_| calls.fetch_add(1, Ordering::Relaxed)).take(3).count();
         assert_eq!((taken, calls.load(Ordering::Relaxed)), (3, 3));
+    }
+
+    #[test]
+    fn calls_after_one_that_found_something_are_interrupted() {
+        let pool = pool(2);
+        let session = session(pool.as_ref());
+        let tally = Tally::default;
+        let found = session.until_found(2, 2, |session, number| {
+            if number == 0 {
+                return Counted { result: Ok(Some(7)), tally: tally() };
+            }
+            while !session.interrupt.interrupted() {
+                std::thread::yield_now();
+            }
+            Counted { result: Err(Interrupted), tally: tally() }
+        });
+        let found: Vec<_> = found.map(|found| found.result).collect();
+        assert_eq!(found, [Ok(Some(7)), Err(Interrupted)]);
+    }
+
+    #[test]
+    fn a_lent_thread_gets_back_what_was_left_on_it() {
+        let fault = |plugin: &str| CallError::Panicked { plugin: plugin.into(), message: "oh".into() };
+        report_fault(fault("own"));
+        let there = lent(|| {
+            report_fault(fault("other"));
+            Ok(())
+        });
+        assert_eq!((there, take_fault()), (Err(fault("other")), Some(fault("own"))));
+        report_fault(fault("own"));
+        assert_eq!((lent(|| Ok(3)), take_fault()), (Ok(3), Some(fault("own"))));
     }
 
     #[test]
