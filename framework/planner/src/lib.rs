@@ -43,6 +43,7 @@ mod shortest_path;
 mod smooth;
 mod solve;
 mod steps;
+mod tail;
 mod view;
 
 pub use admissible::{Holdable, Leavable, Stable, admission};

@@ -62,6 +62,8 @@ pub(crate) enum Call {
     RoadmapEnd = 14,
     /// A random pair of start and goal.
     RoadmapPair = 15,
+    /// A relay to a leg's goal from a place on the way that the graph found.
+    Tail = 16,
 }
 
 /// The key of a call: what it is for, and two numbers that tell calls of a kind apart.

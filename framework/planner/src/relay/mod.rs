@@ -13,7 +13,7 @@ mod follow;
 mod roll;
 mod route;
 
-pub(crate) use effort::{QUICK, THOROUGH};
+pub(crate) use effort::{Effort, QUICK, THOROUGH};
 pub(crate) use route::Route;
 
 use crate::order::{has_order, regrasp_all};
@@ -21,7 +21,6 @@ use crate::segments::moves;
 use crate::session::Work;
 use crate::shortest_path::Length;
 use choice::{Choice, Station};
-use effort::Effort;
 use regrasp_api::{CallError, Configuration};
 use regrasp_plan::Segment;
 use roll::Roll;
