@@ -137,11 +137,12 @@ pub fn json(protocol: &Protocol, outcomes: &[Outcome], trials: &[Trial]) -> Stri
 mod tests {
     use super::*;
     use crate::outcome::tests::{attempt, series};
-    use crate::{Problems, Trial};
+    use crate::Trial;
+    use crate::protocol::consecutive;
 
     #[test]
     fn each_row_says_where_either_method_works() {
-        let series = series(Problems::Consecutive { trials: 1, most: 2 });
+        let series = series(consecutive(1, 2));
         let trial = Trial { attempts: vec![attempt(true, Some(true)); 2], ..Trial::default() };
         let outcomes = [Outcome::of(&series, &[&trial])];
         let protocol = Protocol {
