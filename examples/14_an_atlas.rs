@@ -24,8 +24,7 @@ impl Told for Cells {
 fn main() -> Result<(), Box<dyn Error>> {
     let hands = ["free-fingertips", "four-finger"].map(AtlasHand::load);
     let hands = hands.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let wish =
-        Wish { shapes: vec![Shape::Cube], sizes: vec![0.02, 0.05, 0.5], goals: 12, ..Wish::default() };
+    let wish = Wish { shapes: vec![Shape::Cube], sizes: vec![0.02, 0.05, 0.5], goals: 12, ..Wish::default() };
     let (watch, mut cells) = (Stopwatch::start(), Cells::default());
     explore(&wish, &hands, &[], &Registry::linked()?, (1, &watch, &watch), &mut cells)?;
     let mut cells = cells.0;

@@ -40,10 +40,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (seconds, most, threads) = (number(1, 1e9)?, number(2, 340.0)?, number(3, 1.0)?);
     let plans = words.get(4).map(PathBuf::from);
     let registry = Registry::linked()?;
-    let (mut protocol, files) = load(concat!(env!("CARGO_MANIFEST_DIR"), "/studies/survival"))?;
+    let (protocol, files) = load(concat!(env!("CARGO_MANIFEST_DIR"), "/studies/survival"))?;
     let scenarios = scenarios(&protocol, &files, &registry)?;
     let job = Job::new(&protocol, &scenarios, &registry, plans)?;
-    let (table, known) = open(path, &protocol)?;
+    let (table, mut known) = open(path, &protocol)?;
     let (table, watch) = (Mutex::new(table), Stopwatch::limited(Duration::from_secs_f64(seconds)));
     let told = |trial: &Trial, plans: &[Plan]| {
         let row = job.row(trial, plans.first()).map_err(|error| error.to_string());
@@ -58,15 +58,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let options =
         Options { threads: threads as usize, stop: &watch, clock: &watch, judge: None, told: &told };
-    let mut known = known;
+    let mut asked = protocol.clone();
     // Block by block, so that all series have as many problems whenever it ends.
     for count in (10..=most as usize).step_by(10) {
-        for series in &mut protocol.series {
+        for series in &mut asked.series {
             if let Problems::Random { count: here, .. } = &mut series.problems {
                 *here = count;
             }
         }
-        known = run(&protocol, &scenarios, &registry, known, &options)?;
+        known = run(&asked, &scenarios, &registry, known, &options)?;
     }
     Ok(())
 }
@@ -121,7 +121,7 @@ impl<'a> Job<'a> {
         if let Some(folder) = self.plans.as_ref().filter(|_| trial.problem % 16 == 0) {
             fs::create_dir_all(folder)?;
             let name = row.replace([' ', ','], "-");
-            regrasp::plan::write(plan, &folder.join(format!("{name}.json")))?;
+            regrasp::plan::write(&folder.join(format!("{name}.json")), plan)?;
         }
         let motion = motion(plan)?;
         let certificate = plan.certificate.as_ref().ok_or("a plan without certificate")?;
@@ -134,13 +134,7 @@ impl<'a> Job<'a> {
             holds.map(|holds| holds.friction.value),
             holds.and_then(|holds| holds.effort.as_ref()).map(|effort| effort.value),
         ];
-        write!(
-            row,
-            ",1,{},{},{:.2}",
-            attempt.regrasps,
-            motion.segments.len(),
-            duration.fold(0.0, f64::max)
-        )?;
+        write!(row, ",1,{},{},{:.2}", attempt.regrasps, motion.segments.len(), duration.fold(0.0, f64::max))?;
         for figure in figures {
             row += &figure.map_or(",".into(), |figure| format!(",{figure:.4}"));
         }

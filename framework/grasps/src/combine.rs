@@ -37,7 +37,17 @@ impl<'p> Combiner<'p> {
         // Fingers that may not rest must hold.
         let must = fingers.len() - pools.restful.len();
         let sizes = (least.max(must), most.min(able.len()));
-        Self { task, pools, fingers, able, sizes, apart: vec![0; postures * postures], first, postures, drawn: Vec::new() }
+        Self {
+            task,
+            pools,
+            fingers,
+            able,
+            sizes,
+            apart: vec![0; postures * postures],
+            first,
+            postures,
+            drawn: Vec::new(),
+        }
     }
 
     /// Whether the combination was not drawn before; remembers it.

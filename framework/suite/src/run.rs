@@ -146,7 +146,9 @@ impl Job<'_> {
             let aims = turn.map_or(Vec::new(), |turn| aims(&self.series.problems, (k as u64, step), turn));
             let tasks: Vec<Task> = match turn {
                 None => vec![base.clone()],
-                Some(_) => aims.iter().map(|turn| task(base, start.clone(), turn)).collect::<Result<_, _>>()?,
+                Some(_) => {
+                    aims.iter().map(|turn| task(base, start.clone(), turn)).collect::<Result<_, _>>()?
+                }
             };
             let Some((attempt, plan)) = self.any(setup, &tasks, problem.seed + step as u64)? else {
                 return Ok(None);

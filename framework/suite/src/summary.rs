@@ -136,8 +136,8 @@ pub fn json(protocol: &Protocol, outcomes: &[Outcome], trials: &[Trial]) -> Stri
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::tests::{attempt, series};
     use crate::Trial;
+    use crate::outcome::tests::{attempt, series};
     use crate::protocol::consecutive;
 
     #[test]
