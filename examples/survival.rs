@@ -8,7 +8,7 @@
 //! for the replay in MuJoCo.
 
 use regrasp::Stopwatch;
-use regrasp::api::{Configuration, FingerIndex, Slot};
+use regrasp::api::{Configuration, FingerIndex, Interrupt, Slot};
 use regrasp::host::Registry;
 use regrasp::physics::{ReplaySettings, SimulationSettings, Stage, replay};
 use regrasp::plan::{Motion, Plan, SegmentKind, motion};
@@ -67,6 +67,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
         known = run(&asked, &scenarios, &registry, known, &options)?;
+        if watch.interrupted() {
+            break;
+        }
     }
     Ok(())
 }

@@ -40,7 +40,7 @@ impl Pools {
         };
         let mut pools = Self { resting, touching: Default::default(), restful: FingerSet::EMPTY };
         let (mut missing, mut able) = (Reason::Reach, near.len());
-        for finger in farthest_first(task, &X_HO, near) {
+        for finger in near.iter() {
             if able < fewest {
                 return Ok(Err(missing));
             }
@@ -104,15 +104,4 @@ impl Pools {
     pub fn able(&self) -> FingerSet {
         FingerSet::first(self.resting.joints.len()).iter().filter(|f| !self.touching(*f).is_empty()).collect()
     }
-}
-
-/// Fingers in the order in which they are likely to fail: most poses are given up, and the sooner the better.
-fn farthest_first(task: &Task<'_>, X_HO: &Pose, fingers: FingerSet) -> impl Iterator<Item = FingerIndex> {
-    let beyond = |finger: FingerIndex| {
-        let model = task.hand.finger(finger);
-        (X_HO.translation.vector - model.p_HReach).norm() - model.reach
-    };
-    let mut order: Vec<(f64, FingerIndex)> = fingers.iter().map(|finger| (beyond(finger), finger)).collect();
-    order.sort_by(|(a, _), (b, _)| b.total_cmp(a));
-    order.into_iter().map(|(_, finger)| finger)
 }
