@@ -147,13 +147,15 @@ def main():
     parser.add_argument("--per-series", type=int, default=340)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--regrasp", default=os.environ.get("REGRASP", "regrasp"))
-    parser.add_argument("--plans", default="/tmp/survival-plans")
+    parser.add_argument("--plans", default=str(ROOT / "target" / "survival-plans"))
     parser.add_argument("--tables", action="store_true")
     args = parser.parse_args()
     if not args.tables:
         make(args)
         carry_out(args)
     plans = rows(FOLDER / "plans.csv")
+    if not plans:
+        sys.exit(f"{FOLDER / 'plans.csv'}: there are no plans yet; run this without --tables")
     of = lambda table, name: [row for row in table if row["series"] == name]
     print("## rapier\n")
     tables({name: array(of(plans, name), RAPIER) for name in SERIES}, RAPIER)
