@@ -4,8 +4,7 @@ use super::effort::Effort;
 use super::follow::{Looks, Touch, Track};
 use super::route::Route;
 use crate::session::Work;
-use crate::shortest_path::Length;
-use regrasp_api::{CallError, Configuration, FingerIndex, FingerSet, Hint, PerFinger};
+use regrasp_api::{CallError, Configuration, FingerIndex, FingerSet, Hint, PerFinger, Total};
 use std::cmp::Reverse;
 
 /// The points of a station's fingers are looked at in so many rounds ...
@@ -78,7 +77,7 @@ impl<'a> Station<'a> {
             let q = self.configuration(pick, 0);
             all.push(Choice { q, moved, reach: self.looks.places[looks - 1] });
         }
-        all.sort_by_cached_key(|choice| Length(worth(choice.moved, choice.reach)));
+        all.sort_by_cached_key(|choice| Total(worth(choice.moved, choice.reach)));
         Ok(all)
     }
 
