@@ -12,6 +12,7 @@ mod claims;
 mod clearance;
 mod contact_checks;
 mod controller;
+mod convex;
 mod ends;
 mod grasp;
 mod hand;

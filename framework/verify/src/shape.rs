@@ -1,6 +1,7 @@
 //! Solids as a core and a radius around it, and their exact distances by parry.
 
 use crate::border::{parry_pose, segment, vector};
+use crate::convex::Convex;
 use crate::object::mesh_of;
 use crate::solid::{ANYWHERE, Solid};
 use nalgebra::Point3;
@@ -18,6 +19,7 @@ pub(crate) enum Core {
     Point(Vec3),
     Segment(Vec3, Vec3),
     Cuboid { X: Pose, half: Vec3 },
+    Convex(Convex),
     Mesh(Arc<Solid>),
     HalfSpace { n: Vec3, offset: f64 },
 }
@@ -61,6 +63,7 @@ impl Core {
             Self::Point(p) => Some((*p, 0.0)),
             Self::Segment(a, b) => Some(((a + b) / 2.0, (b - a).norm() / 2.0)),
             Self::Cuboid { X, half } => Some((X.translation.vector, half.norm())),
+            Self::Convex(convex) => Some(convex.ball()),
             Self::Mesh(solid) => {
                 let infinity = Vec3::repeat(f64::INFINITY);
                 let low = solid.vertices.iter().fold(infinity, |low, v| low.inf(v));
@@ -110,12 +113,13 @@ impl Core {
             Self::Point(_) => 0,
             Self::Segment(..) => 1,
             Self::Cuboid { .. } => 2,
-            Self::Mesh(_) => 3,
-            Self::HalfSpace { .. } => 4,
+            Self::Convex(_) => 3,
+            Self::Mesh(_) => 4,
+            Self::HalfSpace { .. } => 5,
         }
     }
 
-    /// Points whose convex hull is the core's; none for what is unbounded.
+    /// Points whose convex hull is the core's; none for what is unbounded or has no corners.
     fn corners(&self) -> Vec<Vec3> {
         match self {
             Self::Point(p) => vec![*p],
@@ -126,7 +130,7 @@ impl Core {
                 (0..8).map(|i| (X * Point3::from(corner(i))).coords).collect()
             }
             Self::Mesh(solid) => solid.vertices.clone(),
-            Self::HalfSpace { .. } => vec![],
+            Self::Convex(_) | Self::HalfSpace { .. } => vec![],
         }
     }
 }
@@ -159,6 +163,7 @@ pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: 
     let moved = |p: &Vec3| (X_BA * Point3::from(*p)).coords;
     match (a, b) {
         (Core::HalfSpace { .. }, _) => 0.0, // Two half-spaces: they always meet.
+        (Core::Convex(convex), Core::HalfSpace { n, offset }) => convex.lowest(&X_BA, n) - offset,
         (_, Core::HalfSpace { n, offset }) => {
             a.corners().iter().map(|p| n.dot(&moved(p)) - offset).fold(f64::INFINITY, f64::min)
         }
@@ -171,6 +176,10 @@ pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: 
             let local = |p: &Vec3| X.inverse_transform_point(&Point3::from(moved(p))).coords;
             apart(&segment(&local(p), &local(q)), &ParryPose::IDENTITY, &cuboid(half))
         }
+        (Core::Segment(p, q), Core::Convex(convex)) => {
+            let segment = segment(&convex.local(&moved(p)), &convex.local(&moved(q)));
+            apart(&segment, &ParryPose::IDENTITY, convex.shape())
+        }
         (Core::Segment(p, q), Core::Mesh(solid)) => {
             let (p, q) = (moved(p), moved(q));
             if contained && solid.contains(&p) {
@@ -182,6 +191,18 @@ pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: 
         (Core::Cuboid { X, half }, Core::Cuboid { X: X_other, half: other }) => {
             let X = (X_BA * X).inv_mul(X_other);
             apart(&cuboid(half), &parry_pose(&X), &cuboid(other))
+        }
+        (Core::Cuboid { X, half }, Core::Convex(convex)) => {
+            apart(&cuboid(half), &parry_pose(&(X_BA * X).inv_mul(&convex.X)), convex.shape())
+        }
+        (Core::Convex(first), Core::Convex(second)) => {
+            apart(first.shape(), &parry_pose(&(X_BA * first.X).inv_mul(&second.X)), second.shape())
+        }
+        (Core::Convex(convex), Core::Mesh(solid)) => {
+            let X = X_BA * convex.X;
+            let inside =
+                contained && (convex.holds(&X, &solid.vertices[0]) || solid.contains(&X.translation.vector));
+            if inside { 0.0 } else { apart(convex.shape(), &parry_pose(&X.inverse()), solid.surface()) }
         }
         (Core::Cuboid { X, half }, Core::Mesh(solid)) => of_box_and_mesh(&(X_BA * X), half, solid, contained),
         (Core::Mesh(first), Core::Mesh(second)) => of_meshes(&X_BA, first, second, contained),
@@ -220,6 +241,7 @@ fn from_point(p: &Vec3, core: &Core) -> f64 {
             let local = X.inverse_transform_point(&Point3::from(*p)).coords;
             cuboid(half).distance_to_local_point(vector(&local), false)
         }
+        Core::Convex(convex) => convex.distance(p),
         Core::Mesh(solid) => {
             let closest = solid.closest(p, ANYWHERE);
             (p - closest.point).norm() * if closest.inside { -1.0 } else { 1.0 }

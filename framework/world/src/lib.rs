@@ -9,6 +9,7 @@ mod hull;
 mod object;
 mod remake;
 mod scene;
+mod shape;
 mod twin;
 mod workspace;
 
@@ -20,5 +21,6 @@ pub use hull::{coarse_hull, convex_hull, convex_pieces};
 pub use object::{Measures, load_object, measure, object_of_mesh, primitive_mesh, signed_distances};
 pub use remake::{Remade, remake};
 pub use scene::{World, check_limits, check_problem, check_size, check_units};
+pub use shape::{ShapeFault, shape_mesh};
 pub use twin::{automatic_twin, roughness, twin_within};
 pub use workspace::{FingerWorkspace, ObjectPlace, finger_workspace, object_places};
