@@ -52,6 +52,10 @@ impl Core {
                 }
                 (Self::Cuboid { X, half: Vec3::from(*size) / 2.0 }, 0.0)
             }
+            Shape::Cylinder { radius, height } => {
+                let (radius, height) = (positive(*radius, "radius")?, positive(*height, "height")?);
+                (Self::Convex(Convex::cylinder(&X, radius, height)), 0.0)
+            }
             Shape::HalfSpace { normal, offset } => (half_space(normal, *offset, &X)?, 0.0),
             Shape::Mesh(source) => (mesh(source, &X)?, 0.0),
         })

@@ -34,6 +34,15 @@ pub enum Shape {
         #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
         radius: f64,
     },
+    /// A cylinder about the origin, along z.
+    Cylinder {
+        /// Radius (m).
+        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
+        radius: f64,
+        /// Length along z (m).
+        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
+        height: f64,
+    },
     /// Everything with `normal · x ≤ offset`.
     HalfSpace {
         /// Outward normal (a direction, of any length).
@@ -155,6 +164,9 @@ impl Shape {
         match self {
             Self::Sphere { radius } => here(Primitive::Sphere { radius: *radius }),
             Self::Box { size } => here(Primitive::Cuboid { half_size: Vec3::from(*size) / 2.0 }),
+            Self::Cylinder { radius, height } => {
+                here(Primitive::Cylinder { radius: *radius, half_height: height / 2.0 })
+            }
             Self::Capsule { from, to, radius } => capsule(&Vec3::from(*from), &Vec3::from(*to), *radius),
             Self::HalfSpace { normal, offset } => {
                 Form::HalfSpace { normal: Vec3::from(*normal).normalize(), offset: *offset }
