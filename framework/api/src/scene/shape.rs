@@ -38,9 +38,11 @@ pub enum Shape {
     Cylinder {
         /// Radius (m).
         #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
+        #[schemars(example = 0.008)]
         radius: f64,
         /// Length along z (m).
         #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
+        #[schemars(example = 0.12)]
         height: f64,
     },
     /// Everything with `normal · x ≤ offset`.
