@@ -20,7 +20,7 @@ use regrasp::api::Interrupt;
 use regrasp::host::Registry;
 use regrasp::run::scenario::{self, Scenario};
 use regrasp::study::compare::{
-    self, StudyWish, Execution, Folder, Hypotheses, Level, Pairs, RUN_THREAD, RunRecord, Seeds, Study,
+    self, Execution, Folder, Hypotheses, Level, Pairs, RUN_THREAD, RunRecord, Seeds, Study, StudyWish,
     VariantWish,
 };
 use std::path::Path;

@@ -6,7 +6,7 @@ use regrasp::host::Registry;
 use regrasp::planner::{Clock, Silent};
 use regrasp::run::scenario;
 use regrasp::study::compare::{
-    Change, StudyWish, Execution, Folder, Level, Machine, RUN_THREAD, RunStatus, Seeds, execute, factorial,
+    Change, Execution, Folder, Level, Machine, RUN_THREAD, RunStatus, Seeds, StudyWish, execute, factorial,
     prepare,
 };
 use regrasp_example_plugins as _;

@@ -176,19 +176,11 @@ fn some_others(
     points: usize,
 ) -> Result<Vec<Track>, CallError> {
     let (task, context) = (work.task, &mut work.context);
-    let (model, radius) = (task.hand.finger(finger), task.hand.fingertip_radius());
     let mut found: Vec<Track> = Vec::new();
     let (mut tried, mut near) = (q.clone(), q.joints[finger]);
     for _ in 0..points {
-        let contact = task.surface.sample(&mut context.random);
-        let p_HF = q.X_HO.rotation * contact.tip_center(radius) + q.X_HO.translation.vector;
-        if (p_HF - model.p_HReach).norm_squared() > model.reach * model.reach {
-            continue;
-        }
-        for &joint in &model.spare {
-            near[joint] = context.random.range(model.joints[joint].lower, model.joints[joint].upper);
-        }
-        let Some(joints) = task.hand.inverse(finger, &p_HF, &near) else { continue };
+        let touch = task.draw_touch(finger, &q.X_HO, &mut near, &mut context.random);
+        let Some((contact, joints)) = touch else { continue };
         (tried.contacts[finger], tried.joints[finger]) = (Some(contact), joints);
         if task.admissible.admit_finger(task, &tried, finger, FingerSet::EMPTY, context)?.is_none() {
             found.push(looks.follow(task, finger, Touch { contact: Some(contact), joints }));
