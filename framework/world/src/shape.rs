@@ -1,9 +1,6 @@
-//! What a shape may be, and its facets.
+//! What a shape may be.
 
-use crate::error::WorldError;
-use crate::object::primitive_mesh;
-use nalgebra::Point3;
-use regrasp_api::{Departure, Form, Mesh, MeshSourceError, Refusal, Refuse, Shape, Vec3, check_described};
+use regrasp_api::{Departure, Refusal, Refuse, Shape, Vec3, check_described};
 use thiserror::Error;
 
 /// Why a shape is refused.
@@ -42,27 +39,6 @@ pub(crate) fn check_shape(shape: &Shape, key: &str) -> Result<(), ShapeFault> {
         _ => {}
     }
     Ok(check_described(shape, key)?)
-}
-
-/// Facets of a round solid that is drawn or simulated by them.
-const FACETS: usize = 320;
-
-/// The facets of a shape described at `key`, in its own frame; the vertices of a round one lie on it. A
-/// half-space has none and is refused.
-pub fn shape_mesh(shape: &Shape, key: &str) -> Result<Mesh, WorldError> {
-    let refused = |error| WorldError::mesh(key, error);
-    match shape.form() {
-        Form::Mesh(source) => source.mesh().map_err(refused),
-        Form::HalfSpace { .. } => Err(WorldError::value(key, "a half-space has no facets")),
-        Form::Primitive(primitive, X) => {
-            let about_origin = primitive_mesh(&primitive, FACETS);
-            let moved = |mesh: Mesh| {
-                let vertices = mesh.vertices().iter().map(|v| (X * Point3::from(*v)).coords).collect();
-                Mesh::new(vertices, mesh.facets().to_vec())
-            };
-            about_origin.and_then(moved).map_err(MeshSourceError::Mesh).map_err(refused)
-        }
-    }
 }
 
 /// Refuses a vector without a direction.
