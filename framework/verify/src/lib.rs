@@ -12,7 +12,6 @@ mod claims;
 mod clearance;
 mod contact_checks;
 mod controller;
-mod convex;
 mod ends;
 mod grasp;
 mod hand;

@@ -1,7 +1,6 @@
 //! Solids as a core and a radius around it, and their exact distances by parry.
 
 use crate::border::{parry_pose, segment, vector};
-use crate::convex::Convex;
 use crate::object::mesh_of;
 use crate::solid::{ANYWHERE, Solid};
 use nalgebra::Point3;
@@ -10,6 +9,7 @@ use parry3d_f64::query::details::distance_segment_segment;
 use parry3d_f64::query::{self, PointQuery};
 use parry3d_f64::shape::{Cuboid, Shape as ParryShape};
 use regrasp_api::{Mesh, MeshSource, PlacedShape, Pose, Shape, Vec3};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// What is left of a solid when a layer of constant thickness is taken off; in the frame of what it belongs
@@ -19,7 +19,6 @@ pub(crate) enum Core {
     Point(Vec3),
     Segment(Vec3, Vec3),
     Cuboid { X: Pose, half: Vec3 },
-    Convex(Convex),
     Mesh(Arc<Solid>),
     HalfSpace { n: Vec3, offset: f64 },
 }
@@ -53,8 +52,7 @@ impl Core {
                 (Self::Cuboid { X, half: Vec3::from(*size) / 2.0 }, 0.0)
             }
             Shape::Cylinder { radius, height } => {
-                let (radius, height) = (positive(*radius, "radius")?, positive(*height, "height")?);
-                (Self::Convex(Convex::cylinder(&X, radius, height)), 0.0)
+                (prism(positive(*radius, "radius")?, positive(*height, "height")?, &X)?, 0.0)
             }
             Shape::HalfSpace { normal, offset } => (half_space(normal, *offset, &X)?, 0.0),
             Shape::Mesh(source) => (mesh(source, &X)?, 0.0),
@@ -67,7 +65,6 @@ impl Core {
             Self::Point(p) => Some((*p, 0.0)),
             Self::Segment(a, b) => Some(((a + b) / 2.0, (b - a).norm() / 2.0)),
             Self::Cuboid { X, half } => Some((X.translation.vector, half.norm())),
-            Self::Convex(convex) => Some(convex.ball()),
             Self::Mesh(solid) => {
                 let infinity = Vec3::repeat(f64::INFINITY);
                 let low = solid.vertices.iter().fold(infinity, |low, v| low.inf(v));
@@ -117,13 +114,12 @@ impl Core {
             Self::Point(_) => 0,
             Self::Segment(..) => 1,
             Self::Cuboid { .. } => 2,
-            Self::Convex(_) => 3,
-            Self::Mesh(_) => 4,
-            Self::HalfSpace { .. } => 5,
+            Self::Mesh(_) => 3,
+            Self::HalfSpace { .. } => 4,
         }
     }
 
-    /// Points whose convex hull is the core's; none for what is unbounded or has no corners.
+    /// Points whose convex hull is the core's; none for what is unbounded.
     fn corners(&self) -> Vec<Vec3> {
         match self {
             Self::Point(p) => vec![*p],
@@ -134,7 +130,7 @@ impl Core {
                 (0..8).map(|i| (X * Point3::from(corner(i))).coords).collect()
             }
             Self::Mesh(solid) => solid.vertices.clone(),
-            Self::Convex(_) | Self::HalfSpace { .. } => vec![],
+            Self::HalfSpace { .. } => vec![],
         }
     }
 }
@@ -148,10 +144,33 @@ fn half_space(normal: &[f64; 3], offset: f64, X: &Pose) -> Result<Core, String> 
     Ok(Core::HalfSpace { n, offset: offset + n.dot(&X.translation.vector) })
 }
 
+/// Sides of the prism that stands for a cylinder: its edges stand out by 4e-5 of the radius.
+const SIDES: u32 = 360;
+
+/// A prism around a cylinder about z: what parry iterates for round bodies may be microns too large.
+fn prism(radius: f64, height: f64, X: &Pose) -> Result<Core, String> {
+    let step = TAU / f64::from(SIDES);
+    let outer = radius / (step / 2.0).cos();
+    let mut vertices = vec![Vec3::z() * (-height / 2.0), Vec3::z() * (height / 2.0)];
+    let mut facets = Vec::with_capacity(4 * SIDES as usize);
+    for side in 0..SIDES {
+        let (sin, cos) = (step * f64::from(side)).sin_cos();
+        vertices.extend([-0.5, 0.5].map(|z| Vec3::new(outer * cos, outer * sin, z * height)));
+        let ([a, b], next) = ([2 + 2 * side, 3 + 2 * side], (side + 1) % SIDES);
+        let [c, d] = [2 + 2 * next, 3 + 2 * next];
+        facets.extend([[0, c, a], [1, b, d], [a, c, d], [a, d, b]]);
+    }
+    solid(&vertices, facets, X)
+}
+
 fn mesh(source: &MeshSource, X: &Pose) -> Result<Core, String> {
     let mesh = mesh_of(source)?;
-    let vertices = mesh.vertices().iter().map(|v| (X * Point3::from(*v)).coords).collect();
-    let moved = Mesh::new(vertices, mesh.facets().to_vec()).map_err(|error| error.to_string())?;
+    solid(mesh.vertices(), mesh.facets().to_vec(), X)
+}
+
+fn solid(vertices: &[Vec3], facets: Vec<[u32; 3]>, X: &Pose) -> Result<Core, String> {
+    let vertices = vertices.iter().map(|v| (X * Point3::from(*v)).coords).collect();
+    let moved = Mesh::new(vertices, facets).map_err(|error| error.to_string())?;
     Ok(Core::Mesh(Arc::new(Solid::new(&moved))))
 }
 
@@ -167,7 +186,6 @@ pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: 
     let moved = |p: &Vec3| (X_BA * Point3::from(*p)).coords;
     match (a, b) {
         (Core::HalfSpace { .. }, _) => 0.0, // Two half-spaces: they always meet.
-        (Core::Convex(convex), Core::HalfSpace { n, offset }) => convex.lowest(&X_BA, n) - offset,
         (_, Core::HalfSpace { n, offset }) => {
             a.corners().iter().map(|p| n.dot(&moved(p)) - offset).fold(f64::INFINITY, f64::min)
         }
@@ -180,10 +198,6 @@ pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: 
             let local = |p: &Vec3| X.inverse_transform_point(&Point3::from(moved(p))).coords;
             apart(&segment(&local(p), &local(q)), &ParryPose::IDENTITY, &cuboid(half))
         }
-        (Core::Segment(p, q), Core::Convex(convex)) => {
-            let segment = segment(&convex.local(&moved(p)), &convex.local(&moved(q)));
-            apart(&segment, &ParryPose::IDENTITY, convex.shape())
-        }
         (Core::Segment(p, q), Core::Mesh(solid)) => {
             let (p, q) = (moved(p), moved(q));
             if contained && solid.contains(&p) {
@@ -195,18 +209,6 @@ pub(crate) fn distance(a: &Core, X_HA: &Pose, b: &Core, X_HB: &Pose, contained: 
         (Core::Cuboid { X, half }, Core::Cuboid { X: X_other, half: other }) => {
             let X = (X_BA * X).inv_mul(X_other);
             apart(&cuboid(half), &parry_pose(&X), &cuboid(other))
-        }
-        (Core::Cuboid { X, half }, Core::Convex(convex)) => {
-            apart(&cuboid(half), &parry_pose(&(X_BA * X).inv_mul(&convex.X)), convex.shape())
-        }
-        (Core::Convex(first), Core::Convex(second)) => {
-            apart(first.shape(), &parry_pose(&(X_BA * first.X).inv_mul(&second.X)), second.shape())
-        }
-        (Core::Convex(convex), Core::Mesh(solid)) => {
-            let X = X_BA * convex.X;
-            let inside =
-                contained && (convex.holds(&X, &solid.vertices[0]) || solid.contains(&X.translation.vector));
-            if inside { 0.0 } else { apart(convex.shape(), &parry_pose(&X.inverse()), solid.surface()) }
         }
         (Core::Cuboid { X, half }, Core::Mesh(solid)) => of_box_and_mesh(&(X_BA * X), half, solid, contained),
         (Core::Mesh(first), Core::Mesh(second)) => of_meshes(&X_BA, first, second, contained),
@@ -245,7 +247,6 @@ fn from_point(p: &Vec3, core: &Core) -> f64 {
             let local = X.inverse_transform_point(&Point3::from(*p)).coords;
             cuboid(half).distance_to_local_point(vector(&local), false)
         }
-        Core::Convex(convex) => convex.distance(p),
         Core::Mesh(solid) => {
             let closest = solid.closest(p, ANYWHERE);
             (p - closest.point).norm() * if closest.inside { -1.0 } else { 1.0 }
