@@ -20,8 +20,8 @@ use regrasp::api::Interrupt;
 use regrasp::host::Registry;
 use regrasp::run::scenario::{self, Scenario};
 use regrasp::study::compare::{
-    self, Draft, Execution, Folder, Hypotheses, Level, Pairs, RUN_THREAD, RunRecord, Seeds, Study,
-    VariantDraft,
+    self, Execution, Folder, Hypotheses, Level, Pairs, RUN_THREAD, RunRecord, Seeds, Study, StudyWish,
+    VariantWish,
 };
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -38,15 +38,15 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
         return beside(args, older);
     }
     let registry = plugins::registry(&args.libraries)?;
-    let (scenarios, draft) = request(args, &registry)?;
-    if draft.hypotheses.pairs == Pairs::All && draft.variants.len() > MOST_IN_PAIRS {
+    let (scenarios, wish) = request(args, &registry)?;
+    if wish.hypotheses.pairs == Pairs::All && wish.variants.len() > MOST_IN_PAIRS {
         return Err(Failure::bad_input(format!(
             "`--pairs all` compares at most {MOST_IN_PAIRS} variants, and there are {}; vary less, or \
              compare each with the first",
-            draft.variants.len()
+            wish.variants.len()
         )));
     }
-    let prepared = compare::prepare(draft, &scenarios, &registry).map_err(Failure::refused)?;
+    let prepared = compare::prepare(wish, &scenarios, &registry).map_err(Failure::refused)?;
     match args.only {
         Some(key) => isolate::make_one(args, &prepared, key),
         None => make(args, prepared),
@@ -75,7 +75,7 @@ fn make(args: &CompareArgs, mut prepared: compare::Prepared<'_>) -> Result<(), F
     let execution = Execution {
         threads,
         clock: &watch,
-        cancel: &watch,
+        interrupt: &watch,
         progress: &bar,
         audit: args.audit,
         keep_plans: args.keep_plans,
@@ -150,7 +150,7 @@ fn hush_runs() {
 }
 
 /// What is asked for: the scenarios with the changes for all variants made, and the study of them.
-fn request(args: &CompareArgs, registry: &Registry) -> Result<(Vec<Scenario>, Draft), Failure> {
+fn request(args: &CompareArgs, registry: &Registry) -> Result<(Vec<Scenario>, StudyWish), Failure> {
     let mut asked = match &args.study {
         Some(path) => compare::load_study(path, registry).map_err(Failure::refused)?,
         None => compare::StudyRequest {
@@ -164,7 +164,7 @@ fn request(args: &CompareArgs, registry: &Registry) -> Result<(Vec<Scenario>, Dr
         overrides::apply_plugins(&mut scenario.choices, &args.uses, &args.sets)?;
         overrides::limit_nodes(scenario, args.max_nodes.or(asked.max_nodes));
     }
-    let draft = Draft {
+    let wish = StudyWish {
         command: args.command(),
         versions: surroundings::versions(&args.libraries.load)?,
         machine: surroundings::machine(threads(args)),
@@ -179,7 +179,7 @@ fn request(args: &CompareArgs, registry: &Registry) -> Result<(Vec<Scenario>, Dr
         skip_unsupported: args.skip_unsupported,
         hypotheses: hypotheses(args, asked.hypotheses),
     };
-    Ok((asked.scenarios, draft))
+    Ok((asked.scenarios, wish))
 }
 
 /// Those of the study file, changed by the command line.
@@ -205,7 +205,7 @@ fn scenarios(args: &CompareArgs, registry: &Registry) -> Result<Vec<Scenario>, F
     }
 }
 
-fn variants(args: &CompareArgs, registry: &Registry) -> Result<Vec<VariantDraft>, Failure> {
+fn variants(args: &CompareArgs, registry: &Registry) -> Result<Vec<VariantWish>, Failure> {
     let factors = args.vary.iter().map(|text| vary::factor(text, registry));
     let factors: Vec<Vec<Level>> = factors.collect::<Result<_, _>>()?;
     let count = factors.iter().try_fold(1usize, |count, factor| count.checked_mul(factor.len()));

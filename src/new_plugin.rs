@@ -29,9 +29,9 @@ pub fn run(args: &NewPluginArgs) -> Result<(), Failure> {
         return python::write(role, &args.name, &folder);
     }
     let framework = framework(args.framework.as_deref())?;
-    let draft = Draft::new(role, &args.name, &framework)?;
-    write_all(&folder, draft.files())?;
-    say(&draft.next_steps(&folder))
+    let new_crate = NewCrate::new(role, &args.name, &framework)?;
+    write_all(&folder, new_crate.files())?;
+    say(&new_crate.next_steps(&folder))
 }
 
 /// Writes files into a folder that is not there, or empty.
@@ -99,14 +99,14 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
 }
 
 /// A crate to be written.
-struct Draft {
+struct NewCrate {
     source: &'static str,
     /// What stands for each `{{key}}` of the texts.
     words: Vec<(&'static str, String)>,
     is_surface: bool,
 }
 
-impl Draft {
+impl NewCrate {
     fn new(role: Role, name: &str, framework: &Path) -> Result<Self, Failure> {
         let (source, slot) = text::module(role);
         let package = format!("{name}-{}", role.name());
@@ -195,20 +195,20 @@ fn summary(source: &str) -> &str {
 mod tests {
     use super::*;
 
-    fn draft(role: Role) -> Draft {
-        Draft::new(role, "mine", Path::new("/some/\"odd\" tree")).unwrap()
+    fn new_crate(role: Role) -> NewCrate {
+        NewCrate::new(role, "mine", Path::new("/some/\"odd\" tree")).unwrap()
     }
 
     #[test]
     fn no_word_is_left_open_and_the_id_is_the_new_one() {
         for role in Role::ALL {
-            let files = draft(role).files();
+            let files = new_crate(role).files();
             let text = |name: &str| &files.iter().find(|(file, _)| *file == name).unwrap().1;
             let open = |(name, text): &&(&str, String)| !name.ends_with(".lock") && text.contains("{{");
             assert_eq!(files.iter().find(open), None);
             assert!(text("src/lib.rs").contains(&format!("id: \"{}/mine\"", role.name())), "{role:?}");
             assert!(!text("src/lib.rs").contains("template"), "{role:?}");
-            let steps = draft(role).next_steps(Path::new("mine"));
+            let steps = new_crate(role).next_steps(Path::new("mine"));
             assert!(!steps.contains("{{") && steps.contains("cd mine\n"), "{steps}");
             for name in ["Cargo.toml", "dynamic/Cargo.toml"] {
                 let manifest: toml::Table = text(name).parse().unwrap();

@@ -6,7 +6,7 @@ use regrasp::host::Registry;
 use regrasp::planner::{Clock, Silent};
 use regrasp::run::scenario;
 use regrasp::study::compare::{
-    Change, Draft, Execution, Folder, Level, Machine, RUN_THREAD, RunStatus, Seeds, execute, factorial,
+    Change, Execution, Folder, Level, Machine, RUN_THREAD, RunStatus, Seeds, StudyWish, execute, factorial,
     prepare,
 };
 use regrasp_example_plugins as _;
@@ -32,7 +32,7 @@ fn with(clock: &(dyn Clock + Sync)) -> Execution<'_> {
     Execution {
         threads: 1,
         clock,
-        cancel: &Uninterrupted,
+        interrupt: &Uninterrupted,
         progress: &Silent,
         audit: false,
         keep_plans: false,
@@ -41,8 +41,8 @@ fn with(clock: &(dyn Clock + Sync)) -> Execution<'_> {
     }
 }
 
-fn draft(factors: &[Vec<Level>]) -> Draft {
-    Draft {
+fn wish(factors: &[Vec<Level>]) -> StudyWish {
+    StudyWish {
         command: vec!["a test".into()],
         versions: BTreeMap::new(),
         machine: Machine::default(),
@@ -60,7 +60,7 @@ fn draft(factors: &[Vec<Level>]) -> Draft {
 fn a_panic_of_the_framework_is_a_row_and_the_study_goes_on() {
     let registry = Registry::linked().expect("the built-in plugins differ");
     let scenarios = [scenario::load("sphere-free", &registry).expect("it is built in")];
-    let mut prepared = prepare(draft(&[]), &scenarios, &registry).expect("the defaults work");
+    let mut prepared = prepare(wish(&[]), &scenarios, &registry).expect("the defaults work");
     let place = tempfile::tempdir().expect("a temporary folder");
     let mut folder = Folder::open(place.path(), &mut prepared.study).expect("the folder is new");
     let clock = Faulty(AtomicUsize::new(0));
@@ -97,7 +97,7 @@ fn figures_of_example_plugins_are_in_the_report() {
         |slot, id: &str| Level::Change(Change { slot, id: Some(id.into()), settings: Default::default() });
     let factors =
         [vec![change(Slot::TransferPlanner, "guarded")], vec![change(Slot::RegraspPlanner, "roadmap")]];
-    let mut prepared = prepare(draft(&factors), &scenarios, &registry).expect("the plugins are linked");
+    let mut prepared = prepare(wish(&factors), &scenarios, &registry).expect("the plugins are linked");
     let place = tempfile::tempdir().expect("a temporary folder");
     let mut folder = Folder::open(place.path(), &mut prepared.study).expect("the folder is new");
     assert!(

@@ -9,7 +9,7 @@ use regrasp::api::Interrupt;
 use regrasp::host::{HostError, slot_by_name};
 use regrasp::run::scenario;
 use regrasp::study::compare::{
-    self, Change, Draft, Execution, Folder, Machine, RunRecord, Seeds, Shard, StudyError, StudyProgress,
+    self, Change, StudyWish, Execution, Folder, Machine, RunRecord, Seeds, Shard, StudyError, StudyProgress,
     fingerprint,
 };
 use serde_json::{Map, json};
@@ -49,11 +49,11 @@ impl Request {
         self.factors.iter().map(|levels| levels.iter().map(level).collect()).collect()
     }
 
-    fn draft(&self) -> Result<Draft, HostError> {
+    fn wish(&self) -> Result<StudyWish, HostError> {
         let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
         let mut versions = self.versions.clone();
         versions.insert("regrasp".into(), env!("CARGO_PKG_VERSION").into());
-        Ok(Draft {
+        Ok(StudyWish {
             command: vec!["regrasp.compare".into()],
             versions,
             machine: machine(self.threads),
@@ -108,20 +108,20 @@ pub fn run_study(
     callback: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<bool> {
     let scenarios: Vec<_> = scenarios.iter().map(|scenario| scenario::Scenario::clone(&scenario.0)).collect();
-    let draft = request.draft().map_err(|error| errors::host(py, &error))?;
+    let wish = request.wish().map_err(|error| errors::host(py, &error))?;
     let registry = registry().map_err(|error| errors::run(py, &error, &Stash::default()))?;
     let watch = Watch::start(None);
     let (stash, theirs) = (Stash::new(&watch), Arc::clone(&watch));
     let job = move || {
         with_stash(&stash, || {
-            let mut prepared = compare::prepare(draft, &scenarios, &registry)?;
+            let mut prepared = compare::prepare(wish, &scenarios, &registry)?;
             let mut folder = Folder::open(&request.output, &mut prepared.study)?;
             let progress = Count { watch: &theirs, done: AtomicUsize::new(0), total: AtomicUsize::new(0) };
-            let (clock, cancel): (&Watch, &dyn Interrupt) = (&theirs, theirs.as_ref());
+            let (clock, interrupt): (&Watch, &dyn Interrupt) = (&theirs, theirs.as_ref());
             let with = Execution {
                 threads: request.threads,
                 clock,
-                cancel,
+                interrupt,
                 progress: &progress,
                 audit: false,
                 keep_plans: false,

@@ -9,13 +9,13 @@ use std::process::{Command, ExitStatus, Stdio};
 
 /// Starts this program again for one run, with the words that it was started with.
 pub struct Processes<'a> {
-    cancel: &'a dyn Interrupt,
+    interrupt: &'a dyn Interrupt,
 }
 
 impl<'a> Processes<'a> {
-    /// Processes whose runs are dropped once `cancel` says so; Ctrl-C reaches them as it does this one.
-    pub fn new(cancel: &'a dyn Interrupt) -> Self {
-        Self { cancel }
+    /// Processes whose runs are dropped once `interrupt` says so; Ctrl-C reaches them as it does this one.
+    pub fn new(interrupt: &'a dyn Interrupt) -> Self {
+        Self { interrupt }
     }
 
     fn start(&self, key: RunKey) -> std::io::Result<std::process::Output> {
@@ -32,8 +32,8 @@ impl Isolate for Processes<'_> {
             Ok(output) => output,
             Err(error) => return Isolated::Died(format!("no process could be started: {error}")),
         };
-        if self.cancel.interrupted() {
-            return Isolated::Cancelled;
+        if self.interrupt.interrupted() {
+            return Isolated::Interrupted;
         }
         // A plugin may print: the run is the last line.
         let line = output.stdout.split(|byte| *byte == b'\n').rfind(|line| !line.is_empty());
@@ -59,7 +59,7 @@ pub fn make_one(args: &CompareArgs, prepared: &Prepared<'_>, key: RunKey) -> Res
     let watch = Watch::start(None);
     let made = compare::make_run(prepared, key, &watch, &watch, args.audit);
     let made =
-        made.ok_or_else(|| Failure::interrupted("the run was cancelled, or is none of the study".into()))?;
+        made.ok_or_else(|| Failure::interrupted("the run was interrupted, or is none of the study".into()))?;
     let line = serde_json::to_string(&made).map_err(Failure::bad_input)?;
     say(&format!("{line}\n"))
 }

@@ -36,8 +36,8 @@ impl Understood<'_> {
             }
             false => HandSource::Robot(&args.file, &options),
         };
-        let draft = Draft { source, output, ball: self.ball, fingers: self.hand.finger_count() };
-        let (text, is_planned) = draft.placed(&self.places)?;
+        let unplaced = Unplaced { source, output, ball: self.ball, fingers: self.hand.finger_count() };
+        let (text, is_planned) = unplaced.placed(&self.places)?;
         if !is_planned {
             let note = "note: at none of the places that were tried a plan was found; change the ball's \
                         position, its radius (`--ball`) or the limits of the joints\n";
@@ -59,7 +59,7 @@ pub enum HandSource<'a> {
 }
 
 /// A scenario that is yet to be placed.
-pub struct Draft<'a> {
+pub struct Unplaced<'a> {
     pub source: HandSource<'a>,
     /// Where it will be written.
     pub output: &'a Path,
@@ -69,7 +69,7 @@ pub struct Draft<'a> {
     pub fingers: usize,
 }
 
-impl Draft<'_> {
+impl Unplaced<'_> {
     /// Its text with the ball at the best place that a plan is found for, and whether one was found; the best
     /// place by reach where none is.
     pub fn placed(&self, places: &[ObjectPlace]) -> Result<(String, bool), Failure> {

@@ -10,6 +10,7 @@ mod golden;
 mod grasps;
 mod hold;
 mod json_errors;
+mod obstacles;
 mod outputs;
 mod pages;
 mod roadmap;

@@ -111,6 +111,8 @@ def shape_of(shape):
         return coal.Capsule(shape["radius"], length), pin.SE3(turn.toRotationMatrix(), (a + b) / 2)
     if kind in ("box", "cuboid"):
         return coal.Box(*shape["size"]), pin.SE3.Identity()
+    if kind == "cylinder":
+        return coal.Cylinder(shape["radius"], shape["height"]), pin.SE3.Identity()
     if kind == "half-space":
         normal = np.array(shape["normal"], float)
         return coal.Halfspace(normal / np.linalg.norm(normal), shape["offset"]), pin.SE3.Identity()

@@ -76,6 +76,7 @@ mod settings;
 mod slots;
 mod spatial;
 mod task;
+mod total;
 
 pub use configuration::*;
 pub use context::*;
@@ -104,3 +105,4 @@ pub use settings::*;
 pub use slots::*;
 pub use spatial::*;
 pub use task::*;
+pub use total::*;

@@ -43,6 +43,23 @@ pub enum Primitive {
     },
 }
 
+impl Primitive {
+    /// Half the size of the box along the axes around it (m).
+    pub fn half_size(&self) -> Vec3 {
+        match *self {
+            Self::Sphere { radius } => Vec3::repeat(radius),
+            Self::Ellipsoid { semi_axes } => semi_axes,
+            Self::Cuboid { half_size } => half_size,
+            Self::Cylinder { radius, half_height } => Vec3::new(radius, radius, half_height),
+            Self::Capsule { radius, half_height } => Vec3::new(radius, radius, radius + half_height),
+            Self::Torus { ring_radius, tube_radius } => {
+                let wide = ring_radius + tube_radius;
+                Vec3::new(wide, wide, tube_radius)
+            }
+        }
+    }
+}
+
 /// A surface that fingertips touch in place of a rough mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Twin {

@@ -1,6 +1,6 @@
 //! Settings of plugins: plain structs whose schema says what they may be.
 
-use crate::{SettingsError, check_schema};
+use crate::{SettingsError, check_described, check_schema, schema_of};
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::Value;
 
@@ -17,8 +17,7 @@ pub trait Settings: Serialize + DeserializeOwned + schemars::JsonSchema + Defaul
 
     /// Checks every value: against the schema first.
     fn validate(&self) -> Result<(), SettingsError> {
-        let value = serde_json::to_value(self).map_err(|error| SettingsError::Form(error.to_string()))?;
-        check_schema(&value, schemars::schema_for!(Self).as_value())?;
+        check_described(self, "")?;
         self.check_further()
     }
 
@@ -27,7 +26,7 @@ pub trait Settings: Serialize + DeserializeOwned + schemars::JsonSchema + Defaul
         let text = if text.trim().is_empty() { "{}" } else { text };
         let form = |error: serde_json::Error| SettingsError::Form(error.to_string());
         let value: Value = serde_json::from_str(text).map_err(form)?;
-        check_schema(&value, schemars::schema_for!(Self).as_value())?;
+        check_schema(&value, &schema_of::<Self>())?;
         let settings: Self = serde_json::from_value(value).map_err(form)?;
         settings.check_further()?;
         Ok(settings)
@@ -35,7 +34,7 @@ pub trait Settings: Serialize + DeserializeOwned + schemars::JsonSchema + Defaul
 
     /// The JSON schema, with defaults and descriptions.
     fn schema() -> String {
-        schemars::schema_for!(Self).as_value().to_string()
+        schema_of::<Self>().to_string()
     }
 }
 
@@ -70,7 +69,10 @@ mod tests {
         assert!(Slide { length: 0.5, edges: Some(3) }.validate().is_ok());
         let long = Slide { length: 1.5, edges: None };
         assert_eq!(refusal(&long), "`length` = 1.5 is outside 0..=1 m");
-        assert_eq!(refusal(&Slide { length: f64::NAN, edges: None }), "`length`: null is not a number");
+        assert_eq!(
+            refusal(&Slide { length: f64::NAN, edges: None }),
+            "`length`: infinity or NaN is not a finite number"
+        );
         assert_eq!(refusal(&Slide { length: 0.0, edges: Some(2) }), "`edges` = 2 is outside 3..=64");
     }
 

@@ -2,8 +2,8 @@
 
 use crate::{
     CallError, Clearance, Cone, Configuration, Contact, ContactModel, Context, EffortBounds, FingerIndex,
-    FingerSet, Grasp, GraspContact, Hand, ObjectModel, Pose, Reason, Resolution, StabilityTest, SurfaceParam,
-    Tolerances, Vec3,
+    FingerJoints, FingerSet, Grasp, GraspContact, Hand, ObjectModel, Pose, Random, Reason, Resolution,
+    StabilityTest, SurfaceParam, Tolerances, Vec3,
 };
 
 /// The planner's predicate for nodes: collision-free, stable, and easy to leave by transfers and regrasps.
@@ -85,6 +85,27 @@ pub struct Task<'a> {
 }
 
 impl<'a> Task<'a> {
+    /// A random touch of the object at `X_HO`: a contact drawn from the surface, and the finger's joints
+    /// there; its spare joints are drawn into `near`. `None` where the finger does not reach.
+    pub fn draw_touch(
+        &self,
+        finger: FingerIndex,
+        X_HO: &Pose,
+        near: &mut FingerJoints,
+        random: &mut Random,
+    ) -> Option<(Contact, FingerJoints)> {
+        let (model, radius) = (self.hand.finger(finger), self.hand.fingertip_radius());
+        let contact = self.surface.sample(random);
+        let p_HF = X_HO.rotation * contact.tip_center(radius) + X_HO.translation.vector;
+        if (p_HF - model.p_HReach).norm_squared() > model.reach * model.reach {
+            return None;
+        }
+        for &joint in &model.spare {
+            near[joint] = random.range(model.joints[joint].lower, model.joints[joint].upper);
+        }
+        Some((contact, self.hand.inverse(finger, &p_HF, near)?))
+    }
+
     /// The friction coefficient to plan with: the object's, less the planner's margin.
     pub fn planning_friction(&self) -> f64 {
         self.object.friction * self.resolution.friction_margin

@@ -68,20 +68,11 @@ pub fn cells_csv(cells: &[Cell], summary: &Summary) -> String {
          regrasps_median,regrasps_90,share_to_90_deg,share_to_135_deg,share_to_180_deg,cause\n",
     );
     for (cell, of) in cells.iter().zip(&summary.cells) {
-        let member = &cell.member;
         let ends = of.share.estimate.map(|share| [share.value, share.low, share.high]);
         let share = |share: &Share| number(share.estimate.map(|share| share.value));
-        let mut fields = vec![
-            member.hand.clone(),
-            member.shape.name().into(),
-            member.size_mm().to_string(),
-            member.friction.to_string(),
-            number(member.mass),
-            cell.grasps.to_string(),
-            cell.poses.to_string(),
-            of.share.reached.to_string(),
-            of.share.of.to_string(),
-        ];
+        let mut fields = member(cell);
+        let counts = [cell.grasps.to_string(), cell.poses.to_string()];
+        fields.extend(counts.into_iter().chain([of.share.reached.to_string(), of.share.of.to_string()]));
         fields.extend((0..3).map(|k| number(ends.map(|ends| ends[k]))));
         fields.extend([number(of.regrasps_median), number(of.regrasps_90)]);
         fields.extend(of.by_angle.iter().map(share));
@@ -91,6 +82,18 @@ pub fn cells_csv(cells: &[Cell], summary: &Summary) -> String {
     text
 }
 
+/// The columns that both tables begin with.
+fn member(cell: &Cell) -> Vec<String> {
+    let member = &cell.member;
+    vec![
+        member.hand.clone(),
+        member.shape.name().into(),
+        member.size_mm().to_string(),
+        member.friction.to_string(),
+        number(member.mass),
+    ]
+}
+
 /// One row for each attempt.
 pub fn attempts_csv(cells: &[Cell]) -> String {
     let mut text = String::from(
@@ -98,16 +101,9 @@ pub fn attempts_csv(cells: &[Cell]) -> String {
          found,tries,regrasps\n",
     );
     for cell in cells {
-        let member = &cell.member;
         for (goal, attempt) in cell.attempts.iter().enumerate() {
-            let mut fields = vec![
-                member.hand.clone(),
-                member.shape.name().into(),
-                member.size_mm().to_string(),
-                member.friction.to_string(),
-                number(member.mass),
-                goal.to_string(),
-            ];
+            let mut fields = member(cell);
+            fields.push(goal.to_string());
             fields.extend(attempt.axis.map(|x| x.to_string()));
             fields.push(attempt.angle_deg.to_string());
             fields.extend(attempt.start.map(|x| x.to_string()));

@@ -87,14 +87,12 @@ impl Assets<'_> {
 
     /// The geometries of one piece of hand or obstacle.
     fn piece(&mut self, body: &str, piece: &Piece) -> Attributes {
+        let mesh =
+            |assets: &mut Self| vec![("type", "mesh".into()), ("mesh", assets.mesh(body, &piece.mesh))];
         let mut attributes = match piece.solid {
-            Solid::Sphere { radius } => vec![("type", "sphere".into()), ("size", radius.to_string())],
-            Solid::Box { half_size } => vec![("type", "box".into()), ("size", numbers(half_size.iter()))],
-            Solid::Capsule { radius, half_height } => {
-                vec![("type", "capsule".into()), ("size", numbers(&[radius, half_height]))]
-            }
+            Solid::Primitive(primitive) => geometry(&primitive).unwrap_or_else(|| mesh(self)),
             Solid::HalfSpace => vec![("type", "plane".into()), ("size", "1 1 0.1".into())],
-            Solid::Mesh => vec![("type", "mesh".into()), ("mesh", self.mesh(body, &piece.mesh))],
+            Solid::Mesh => mesh(self),
         };
         attributes.extend(place(&piece.X_BS));
         attributes
@@ -102,17 +100,12 @@ impl Assets<'_> {
 
     /// The geometries of the object, in O.
     fn object(&mut self, scene: &Scene<'_>) -> Vec<Attributes> {
-        let sized = |kind: &str, size: &[f64]| vec![vec![("type", kind.into()), ("size", numbers(size))]];
-        match scene.object.primitive {
-            Some(Primitive::Sphere { radius }) => sized("sphere", &[radius]),
-            Some(Primitive::Ellipsoid { semi_axes }) => sized("ellipsoid", semi_axes.as_slice()),
-            Some(Primitive::Cuboid { half_size }) => sized("box", half_size.as_slice()),
-            Some(Primitive::Cylinder { radius, half_height }) => sized("cylinder", &[radius, half_height]),
-            Some(Primitive::Capsule { radius, half_height }) => sized("capsule", &[radius, half_height]),
-            _ if scene.object.mesh.is_locally_convex() => {
+        match scene.object.primitive.as_ref().and_then(geometry) {
+            Some(geometry) => vec![geometry],
+            None if scene.object.mesh.is_locally_convex() => {
                 vec![vec![("type", "mesh".into()), ("mesh", self.mesh(OBJECT, &scene.object.mesh))]]
             }
-            _ => self.wedges(&scene.object.mesh),
+            None => self.wedges(&scene.object.mesh),
         }
     }
 
@@ -138,6 +131,19 @@ impl Assets<'_> {
             }
         });
     }
+}
+
+/// A primitive as MuJoCo knows it; `None` where it does not.
+fn geometry(primitive: &Primitive) -> Option<Attributes> {
+    let (kind, size) = match primitive {
+        Primitive::Sphere { radius } => ("sphere", vec![*radius]),
+        Primitive::Ellipsoid { semi_axes } => ("ellipsoid", semi_axes.as_slice().to_vec()),
+        Primitive::Cuboid { half_size } => ("box", half_size.as_slice().to_vec()),
+        Primitive::Cylinder { radius, half_height } => ("cylinder", vec![*radius, *half_height]),
+        Primitive::Capsule { radius, half_height } => ("capsule", vec![*radius, *half_height]),
+        Primitive::Torus { .. } => return None,
+    };
+    Some(vec![("type", kind.into()), ("size", numbers(&size))])
 }
 
 /// The geometries of hand and obstacles.

@@ -8,7 +8,7 @@ use crate::solid::{Piece, SLAB, Solid};
 use crate::trajectory::trajectory;
 use crate::xml::{Xml, direction, numbers, position};
 use crate::{File, Scene};
-use regrasp_api::{JointKind, Mat3, Mesh, Pose};
+use regrasp_api::{JointKind, Mat3, Mesh, Pose, Primitive};
 
 /// Mass (kg) and diagonal of the inertia (kg·m²) of every link, for want of better.
 pub(crate) const LINK_MASS: (f64, f64) = (0.02, 1e-5);
@@ -82,20 +82,25 @@ impl Meshes<'_> {
     fn geometry(&mut self, link: &str, piece: &Piece) -> Vec<Geometry> {
         let X = piece.X_BS;
         let ball = |radius: f64| vec![("radius", radius.to_string())];
-        match &piece.solid {
-            Solid::Sphere { radius } => vec![(X, "sphere", ball(*radius))],
-            Solid::Box { half_size } => vec![(X, "box", vec![("size", numbers((half_size * 2.0).iter()))])],
-            Solid::Capsule { radius, half_height } => {
-                let length = ("length", (2.0 * half_height).to_string());
-                let end = |z: f64| (X * Pose::translation(0.0, 0.0, z), "sphere", ball(*radius));
-                let rod = (X, "cylinder", [ball(*radius), vec![length]].concat());
-                vec![rod, end(*half_height), end(-half_height)]
+        let rod = |radius: f64, half_height: f64| {
+            let length = ("length", (2.0 * half_height).to_string());
+            (X, "cylinder", [ball(radius), vec![length]].concat())
+        };
+        match piece.solid {
+            Solid::Primitive(Primitive::Sphere { radius }) => vec![(X, "sphere", ball(radius))],
+            Solid::Primitive(Primitive::Cuboid { half_size }) => {
+                vec![(X, "box", vec![("size", numbers((half_size * 2.0).iter()))])]
+            }
+            Solid::Primitive(Primitive::Cylinder { radius, half_height }) => vec![rod(radius, half_height)],
+            Solid::Primitive(Primitive::Capsule { radius, half_height }) => {
+                let end = |z: f64| (X * Pose::translation(0.0, 0.0, z), "sphere", ball(radius));
+                vec![rod(radius, half_height), end(half_height), end(-half_height)]
             }
             Solid::HalfSpace => {
                 let size = numbers(&[SLAB.0, SLAB.0, SLAB.1]);
                 vec![(piece.X_BMesh(), "box", vec![("size", size)])]
             }
-            Solid::Mesh => {
+            Solid::Primitive(Primitive::Ellipsoid { .. } | Primitive::Torus { .. }) | Solid::Mesh => {
                 let name = format!("{}.{}.{}.stl", self.stem, file_stem(link), self.files.len());
                 self.files.push(File { name: name.clone(), bytes: stl(&piece.mesh) });
                 vec![(X, "mesh", vec![("filename", name)])]

@@ -68,18 +68,11 @@ impl Pools {
         finger: FingerIndex,
         context: &mut Context<'_>,
     ) -> Result<Reason, CallError> {
-        let (model, radius) = (task.hand.finger(finger), task.hand.fingertip_radius());
-        let (mut q, mut near, mut last) = (self.resting.clone(), model.rest, Reason::Reach);
+        let near = task.hand.finger(finger).rest;
+        let (mut q, mut near, mut last) = (self.resting.clone(), near, Reason::Reach);
         for _ in 0..DRAWS {
-            let contact = task.surface.sample(&mut context.random);
-            let p_HF = q.X_HO.rotation * contact.tip_center(radius) + q.X_HO.translation.vector;
-            if (p_HF - model.p_HReach).norm_squared() > model.reach * model.reach {
-                continue;
-            }
-            for &joint in &model.spare {
-                near[joint] = context.random.range(model.joints[joint].lower, model.joints[joint].upper);
-            }
-            let Some(joints) = task.hand.inverse(finger, &p_HF, &near) else { continue };
+            let touch = task.draw_touch(finger, &q.X_HO, &mut near, &mut context.random);
+            let Some((contact, joints)) = touch else { continue };
             (q.joints[finger], q.contacts[finger]) = (joints, Some(contact));
             match task.admissible.admit_finger(task, &q, finger, FingerSet::EMPTY, context)? {
                 Some(reason) => last = reason,

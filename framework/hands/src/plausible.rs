@@ -3,7 +3,7 @@
 
 use crate::fingers::Fingers;
 use crate::tree::Tree;
-use regrasp_api::{HandDescription, JointDescription, JointKind, Shape, Vec3};
+use regrasp_api::{Form, HandDescription, JointDescription, JointKind, Shape, Vec3};
 use regrasp_formats::{Geometry, Link, RobotFault as Fault};
 
 /// Fingers reach no farther (m), and no less.
@@ -88,14 +88,12 @@ fn first_solid(link: &Link) -> (usize, Remedy) {
     meshes.next().map_or((link.line, Remedy::Shape), |mesh| (mesh.line, Remedy::Mesh))
 }
 
-/// The longest side of the box along the axes around a shape (m).
+/// The longest side of the box around a shape (m), along its own axes.
 fn size(shape: &Shape) -> f64 {
-    match shape {
-        Shape::Sphere { radius } => 2.0 * radius,
-        Shape::Box { size } => size.iter().copied().fold(0.0, f64::max),
-        Shape::Capsule { from, to, radius } => (Vec3::from(*to) - Vec3::from(*from)).norm() + 2.0 * radius,
-        Shape::HalfSpace { .. } => 0.0,
-        Shape::Mesh(source) => {
+    match shape.form() {
+        Form::Primitive(primitive, _) => 2.0 * primitive.half_size().max(),
+        Form::HalfSpace { .. } => 0.0,
+        Form::Mesh(source) => {
             let points = || source.vertices.iter().map(|&v| Vec3::from(v));
             let low = points().reduce(|a, b| a.inf(&b)).unwrap_or_default();
             let high = points().reduce(|a, b| a.sup(&b)).unwrap_or_default();

@@ -6,6 +6,7 @@ use crate::finger::{FIXED, HULL, TIPS, groups};
 use rapier3d_f64::math::Pose as GlamPose;
 use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, SharedShape};
 use regrasp_api::{Mesh, PlacedShape, Problem, Shape, Vec3};
+use regrasp_world::{WorldError, shape_mesh};
 
 /// A shape with its pose in H.
 pub(crate) type Placed = (GlamPose, SharedShape);
@@ -21,6 +22,7 @@ pub(crate) fn fixed_shapes(problem: &Problem) -> Result<Vec<Placed>, PhysicsErro
 
 fn fixed_shape(placed: &PlacedShape) -> Result<Placed, PhysicsError> {
     let pose = placed.pose.pose().map_err(|error| PhysicsError::Shape(error.to_string()))?;
+    let refused = |error: WorldError| PhysicsError::Shape(error.to_string());
     let (at, shape) = match &placed.shape {
         Shape::Sphere { radius } => (Vec3::zeros(), SharedShape::ball(*radius)),
         Shape::Box { size: [x, y, z] } => (Vec3::zeros(), SharedShape::cuboid(x / 2.0, y / 2.0, z / 2.0)),
@@ -32,9 +34,10 @@ fn fixed_shape(placed: &PlacedShape) -> Result<Placed, PhysicsError> {
             let n = Vec3::from(*normal).normalize();
             (n * *offset, SharedShape::halfspace(to_glam(&n)))
         }
-        Shape::Mesh(source) => {
-            let mesh = source.mesh().map_err(|error| PhysicsError::Shape(error.to_string()))?;
-            (Vec3::zeros(), triangles(&mesh)?)
+        other => {
+            let mesh = shape_mesh(other, "shape").map_err(refused)?;
+            let is_mesh = matches!(other, Shape::Mesh(_));
+            (Vec3::zeros(), if is_mesh { triangles(&mesh)? } else { hull(&mesh)? })
         }
     };
     Ok((pose_to_glam(&pose) * GlamPose::from_translation(to_glam(&at)), shape))
@@ -46,7 +49,7 @@ fn triangles(mesh: &Mesh) -> Result<SharedShape, PhysicsError> {
         .map_err(|error| PhysicsError::Shape(error.to_string()))
 }
 
-/// What of the object meets fixed bodies: the convex hull of its mesh.
+/// A convex hull: of a convex shape, or what of the object meets fixed bodies.
 pub(crate) fn hull(mesh: &Mesh) -> Result<SharedShape, PhysicsError> {
     let vertices: Vec<_> = mesh.vertices().iter().map(to_glam).collect();
     SharedShape::convex_hull(&vertices)

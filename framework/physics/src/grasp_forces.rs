@@ -21,12 +21,20 @@ pub fn grasp_forces(
     stages: &[Stage<'_>],
     settings: &SimulationSettings,
 ) -> Result<Vec<Vec<Option<Held>>>, PhysicsError> {
+    stage_by_stage((hand, object, g_H), friction, stages, settings, |holder, stage| holder.stage(stage))
+}
+
+/// What `force` says of each stage.
+fn stage_by_stage(
+    scene: (&dyn Hand, &ObjectModel, Vec3),
+    friction: Friction,
+    stages: &[Stage<'_>],
+    settings: &SimulationSettings,
+    force: impl Fn(&Holder<'_>, &Stage<'_>) -> Vec<Option<Held>>,
+) -> Result<Vec<Vec<Option<Held>>>, PhysicsError> {
     settings.validate()?;
     friction.validate()?;
-    let one = |stage: &Stage<'_>| {
-        let holder = Holder::new((hand, object, g_H), stage.friction(friction), settings);
-        holder.stage(stage)
-    };
+    let one = |stage: &Stage<'_>| force(&Holder::new(scene, stage.friction(friction), settings), stage);
     Ok(stages.iter().map(one).collect())
 }
 
@@ -41,10 +49,7 @@ pub fn dragged_forces(
     stages: &[Stage<'_>],
     settings: &SimulationSettings,
 ) -> Result<Vec<Vec<Option<Held>>>, PhysicsError> {
-    settings.validate()?;
-    friction.validate()?;
-    let one = |stage: &Stage<'_>| {
-        let holder = Holder::new((hand, object, g_H), stage.friction(friction), settings);
+    stage_by_stage((hand, object, g_H), friction, stages, settings, |holder, stage| {
         if stage.moving.is_some() || !friction.has_torsion() {
             return holder.stage(stage);
         }
@@ -52,8 +57,7 @@ pub fn dragged_forces(
             PerFinger::from_fn(spins.len(), |finger| spins[finger].0 * friction.gamma)
         };
         holder.choose(stage, &spins(hand, stage).iter().map(part).collect::<Vec<_>>())
-    };
-    Ok(stages.iter().map(one).collect())
+    })
 }
 
 /// The forces by which the fingers that touch hold the object in one grasp at rest.

@@ -4,10 +4,9 @@ use crate::admissible::Stable;
 use crate::error::{End, PlanError, explain};
 use crate::foresight::outlook;
 use crate::session::{Call, Counted, Session, Work};
-use crate::shortest_path::Length;
 use regrasp_api::{
     Admissible, CallError, Configuration, Contact, FingerGrasp, FingerIndex, FingerJoints, FingerSet,
-    PerFinger, Pose, PoseRequest, Tally, Task,
+    PerFinger, Pose, PoseRequest, Tally, Task, Total,
 };
 use std::collections::VecDeque;
 
@@ -156,7 +155,7 @@ pub(crate) fn sort_by_ease<'p>(
     // Fractions with a small power of two below: their sums are exact, and ties keep the order in which the
     // grasps were found.
     let ease = |q: &Configuration| others.clone().map(|X_HO| outlook(task, q, X_HO).fraction).sum::<f64>();
-    found.sort_by_cached_key(|q| std::cmp::Reverse(Length(ease(q))));
+    found.sort_by_cached_key(|q| std::cmp::Reverse(Total(ease(q))));
 }
 
 /// Grasps at a pose, found one after the other: the `k`-th is a pure function of its number.

@@ -1,6 +1,6 @@
 //! Why a problem cannot be planned at all; "no plan found" is not among these but an outcome.
 
-use regrasp_api::{BodyPair, CallError, FingerIndex, PoseError, Reason, Refusal, Refuse};
+use regrasp_api::{BodyPair, CallError, EndsError, FingerIndex, Reason, Refusal, Refuse};
 use std::fmt;
 use thiserror::Error;
 
@@ -26,14 +26,9 @@ impl fmt::Display for End {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum PlanError {
-    /// A pose that cannot be read.
-    #[error("`{end}.pose`: {error}")]
-    Pose {
-        /// Which end.
-        end: End,
-        /// What is wrong with it.
-        error: PoseError,
-    },
+    /// A pose that cannot be read, or two in turn that coincide.
+    #[error(transparent)]
+    Ends(#[from] EndsError),
     /// A given grasp that cannot be read: wrong number of fingers or joints, a contact away from the surface.
     #[error("`{end}.grasp`: {reason}")]
     Grasp {
@@ -83,9 +78,6 @@ pub enum PlanError {
         /// The fewest contacts that can be stable.
         fewest: usize,
     },
-    /// Two consecutive goals, or the start and the first goal, coincide.
-    #[error("`goal[{0}]` is where the object already is; remove it or change its pose")]
-    Coincide(usize),
     /// The motion cannot be timed.
     #[error(transparent)]
     Timing(#[from] regrasp_plan::TimingError),
@@ -98,12 +90,11 @@ impl Refuse for PlanError {
     fn refusal(&self) -> Refusal {
         let problem = |key: String| Refusal::new("problem", self).key(key);
         match self {
-            Self::Pose { end, error } => error.refusal().told(self).below(&format!("{end}.pose")),
+            Self::Ends(error) => error.refusal(),
             Self::Grasp { end, .. } | Self::Unstable { end, .. } => problem(format!("{end}.grasp")),
             Self::Finger { end, finger, .. } => problem(format!("{end}.grasp[{}]", finger.0)),
             Self::Collision { end, .. } => problem(end.to_string()),
             Self::TooFewFingers { .. } => problem("hand".into()),
-            Self::Coincide(goal) => problem(format!("goal[{goal}]")),
             Self::Timing(_) => Refusal::new("timing", self),
             Self::Call(error) => error.refusal(),
         }

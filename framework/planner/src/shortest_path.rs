@@ -1,7 +1,7 @@
 //! A shortest path through the manipulation graph by A*.
 
 use crate::graph::Graph;
-use regrasp_api::{EdgeId, NodeId};
+use regrasp_api::{EdgeId, NodeId, Total};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -10,21 +10,6 @@ use std::collections::BinaryHeap;
 pub(crate) struct Step {
     pub edge: EdgeId,
     pub forward: bool,
-}
-
-/// A distance that orders totally.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) struct Length(pub f64);
-impl Eq for Length {}
-impl PartialOrd for Length {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Length {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0)
-    }
 }
 
 /// The shortest path from `start` to the nearest of `goals` in the planner's metric, `None` if there is none.
@@ -37,7 +22,7 @@ pub(crate) fn shortest_path(graph: &Graph, start: NodeId, goals: &[NodeId]) -> O
     let adjacent = adjacency(graph);
     let mut cost = vec![f64::INFINITY; graph.node_count()];
     let mut came_by: Vec<Option<(NodeId, Step)>> = vec![None; graph.node_count()];
-    let mut open = BinaryHeap::from([Reverse((Length(ahead(start)), start))]);
+    let mut open = BinaryHeap::from([Reverse((Total(ahead(start)), start))]);
     let mut closed = vec![false; graph.node_count()];
     cost[start.0 as usize] = 0.0;
     while let Some(Reverse((_, node))) = open.pop() {
@@ -52,7 +37,7 @@ pub(crate) fn shortest_path(graph: &Graph, start: NodeId, goals: &[NodeId]) -> O
             if through < cost[next.0 as usize] {
                 cost[next.0 as usize] = through;
                 came_by[next.0 as usize] = Some((node, step));
-                open.push(Reverse((Length(through + ahead(next)), next)));
+                open.push(Reverse((Total(through + ahead(next)), next)));
             }
         }
     }

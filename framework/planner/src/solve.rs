@@ -2,7 +2,7 @@
 
 use crate::admissible::{Holdable, admission};
 use crate::draft::Draft;
-use crate::error::{End, PlanError};
+use crate::error::PlanError;
 use crate::graph::Graph;
 use crate::report::Outcome;
 use crate::request::Request;
@@ -10,7 +10,7 @@ use crate::roadmap::Through;
 use crate::run::Run;
 use crate::session::{Drivers, Session};
 use regrasp_abi::GuardedService;
-use regrasp_api::{Admissible, FingerSet, Pose, PoseDescription, Problem, SearchPolicy, Tally, Task, Vec3};
+use regrasp_api::{Admissible, FingerSet, Pose, SearchPolicy, Tally, Task, Vec3};
 use regrasp_plan::Statistics;
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ pub fn solve_through(request: &Request<'_>, through: Through<'_>) -> Result<Outc
 }
 
 fn solve_with(request: &Request<'_>, through: Option<Through<'_>>) -> Result<Outcome, PlanError> {
-    let poses = poses(request.problem)?;
+    let poses = request.problem.poses()?;
     with_task(request, &poses, |task, session, policy| {
         let holdable = GuardedService::guarding("service/admissible", &Holdable as &dyn Admissible);
         let choices = finger_choices(task, policy.spare_fingers, policy.more_fingers)?;
@@ -86,23 +86,6 @@ pub(crate) fn with_task<T>(
         pool: pool.as_ref(),
     };
     work(&task, &session, policy)
-}
-
-/// Start and goals as poses; two in turn that coincide are refused where no grasp tells them apart.
-pub(crate) fn poses(problem: &Problem) -> Result<Vec<Pose>, PlanError> {
-    let read = |end, pose: &PoseDescription| pose.pose().map_err(|error| PlanError::Pose { end, error });
-    let mut poses = vec![read(End::Start, &problem.start.pose)?];
-    for (index, goal) in problem.goal.iter().enumerate() {
-        let pose = read(End::Goal(index), &goal.pose)?;
-        let before = poses[index];
-        let apart = (pose.translation.vector - before.translation.vector).norm()
-            + regrasp_api::angle_between(&pose.rotation, &before.rotation);
-        if apart < 1e-9 && goal.grasp.is_none() {
-            return Err(PlanError::Coincide(index));
-        }
-        poses.push(pose);
-    }
-    Ok(poses)
 }
 
 /// The sets of fingers that may hold the object, with `spare` more than the fewest that can be stable: 1

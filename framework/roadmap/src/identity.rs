@@ -2,7 +2,7 @@
 
 use crate::Difference;
 use crate::digest::digest;
-use regrasp_api::{Pose, Vec3};
+use regrasp_api::Vec3;
 use regrasp_run::Setup;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -44,7 +44,7 @@ impl Identity {
             "obstacle": problem.obstacle, "gravity": problem.gravity, "hold": problem.hold,
             "limits": limits, "plugins": setup.choices().iter().collect::<Vec<_>>(),
         });
-        let (lower, upper) = problem.sampling_box(&poses(setup));
+        let (lower, upper) = problem.sampling_box(&problem.poses().unwrap_or_default());
         let corners = [lower, upper].map(|corner: Vec3| [corner.x, corner.y, corner.z]);
         Self {
             hand: named(&problem.hand.name, &json!(problem.hand)),
@@ -73,13 +73,6 @@ impl Identity {
         let sampling = (self.sampling != of.sampling).then_some(Difference::Sampling);
         self.difference(of).or(sampling)
     }
-}
-
-/// Start and goals, which the workspace lies about where the problem gives none.
-fn poses(setup: &Setup<'_>) -> Vec<Pose> {
-    let problem = &setup.scenario().problem;
-    let goals = problem.goal.iter().map(|goal| &goal.pose);
-    std::iter::once(&problem.start.pose).chain(goals).filter_map(|pose| pose.pose().ok()).collect()
 }
 
 fn named(name: &str, value: &Value) -> Named {

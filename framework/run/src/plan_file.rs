@@ -33,19 +33,12 @@ impl Setup<'_> {
         claims.contact.cones = cones.record(&mut segments);
         self.write_forces(problem, &claims, &outcome.motion, &mut segments);
         Ok(Plan {
-            format: Format::RegraspPlan,
-            version: VERSION,
-            scenario: self.resolved_scenario(problem),
-            seed,
-            versions: [("regrasp".to_owned(), env!("CARGO_PKG_VERSION").to_owned())].into(),
-            object: self.object_record(),
             notes: regrasp_plan::plugin_notes(&outcome.tally),
-            claims,
             goals_reached: outcome.goal_ends.clone(),
             stopped_by,
             statistics: outcome.statistics.clone(),
-            certificate: None,
             segments,
+            ..self.without_motion(problem, claims, seed)
         })
     }
 
@@ -56,8 +49,11 @@ impl Setup<'_> {
         let problem = &self.scenario.problem;
         let cones =
             Cones::of(&self.probes(), self.plugins.contact_model.as_ref(), self.scenario.object.friction);
-        let claims = self.claims(problem, &cones);
-        Ok(Plan {
+        Ok(self.without_motion(problem, self.claims(problem, &cones), seed))
+    }
+
+    fn without_motion(&self, problem: &Problem, claims: Claims, seed: u64) -> Plan {
+        Plan {
             format: Format::RegraspPlan,
             version: VERSION,
             scenario: self.resolved_scenario(problem),
@@ -71,7 +67,7 @@ impl Setup<'_> {
             statistics: Default::default(),
             certificate: None,
             segments: Vec::new(),
-        })
+        }
     }
 
     /// Contacts of all fingers all over the object.

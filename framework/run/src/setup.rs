@@ -6,8 +6,7 @@ use crate::error;
 use crate::scenario::{Scenario, ScenarioError, other_test};
 use regrasp_abi::GuardedService;
 use regrasp_api::{
-    Clearance, FrictionFactor, Hand, HoldDescription, Interrupt, Parts, Pose, PoseDescription, PoseError,
-    Problem, Refusal, Refuse, Vec3,
+    Clearance, FrictionFactor, Hand, HoldDescription, Interrupt, Parts, Pose, Problem, Refusal, Vec3,
 };
 use regrasp_host::{Choices, PluginSet, Registry, Source};
 use regrasp_plan::{Plan, StoppedBy};
@@ -364,16 +363,13 @@ fn can_hold(scenario: &Scenario, choices: &Choices) -> Result<(), ScenarioError>
 /// The poses of start and goals; refuses those at which the object itself is in collision: no grasp could
 /// mend that.
 fn poses(scenario: &Scenario, clearance: &SceneClearance) -> Result<Vec<Pose>, ScenarioError> {
-    let problem = &scenario.problem;
-    let start = ("start.pose".to_owned(), &problem.start.pose);
-    let goals = problem.goal.iter().enumerate().map(|(i, goal)| (format!("goal[{i}].pose"), &goal.pose));
-    let free = |(key, pose): (String, &PoseDescription)| {
-        let named = |error: PoseError| error.refusal().told(&format!("`{key}`: {error}")).below(&key);
-        let X_HO = pose.pose().map_err(|error| scenario.refuse(&named(error)))?;
+    let poses = scenario.problem.poses().map_err(|error| scenario.refuse(&error))?;
+    let goals = (0..poses.len() - 1).map(|i| format!("goal[{i}].pose"));
+    for (key, X_HO) in iter::once("start.pose".to_owned()).chain(goals).zip(&poses) {
         let overlap = |pair| scenario.refuse(&error::collision(scenario, &key, pair, "move one of them"));
-        clearance.object_free(&X_HO).map_err(overlap).map(|()| X_HO)
-    };
-    iter::once(start).chain(goals).map(free).collect()
+        clearance.object_free(X_HO).map_err(overlap)?;
+    }
+    Ok(poses)
 }
 
 fn stopped_by(outcome: &Outcome, stop: &dyn Stop) -> Option<StoppedBy> {

@@ -9,6 +9,7 @@ use parry3d_f64::query::details::distance_segment_segment;
 use parry3d_f64::query::{self, PointQuery};
 use parry3d_f64::shape::{Cuboid, Shape as ParryShape};
 use regrasp_api::{Mesh, MeshSource, PlacedShape, Pose, Shape, Vec3};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// What is left of a solid when a layer of constant thickness is taken off; in the frame of what it belongs
@@ -49,6 +50,9 @@ impl Core {
                     positive(edge, "size")?;
                 }
                 (Self::Cuboid { X, half: Vec3::from(*size) / 2.0 }, 0.0)
+            }
+            Shape::Cylinder { radius, height } => {
+                (prism(positive(*radius, "radius")?, positive(*height, "height")?, &X)?, 0.0)
             }
             Shape::HalfSpace { normal, offset } => (half_space(normal, *offset, &X)?, 0.0),
             Shape::Mesh(source) => (mesh(source, &X)?, 0.0),
@@ -149,10 +153,33 @@ fn half_space(normal: &[f64; 3], offset: f64, X: &Pose) -> Result<Core, String> 
     Ok(Core::HalfSpace { n, offset: offset + n.dot(&X.translation.vector) })
 }
 
+/// Sides of the prism that stands for a cylinder: its edges stand out by 4e-5 of the radius.
+const SIDES: u32 = 360;
+
+/// A prism around a cylinder about z: what parry iterates for round bodies may be microns too large.
+fn prism(radius: f64, height: f64, X: &Pose) -> Result<Core, String> {
+    let step = TAU / f64::from(SIDES);
+    let outer = radius / (step / 2.0).cos();
+    let mut vertices = vec![Vec3::z() * (-height / 2.0), Vec3::z() * (height / 2.0)];
+    let mut facets = Vec::with_capacity(4 * SIDES as usize);
+    for side in 0..SIDES {
+        let (sin, cos) = (step * f64::from(side)).sin_cos();
+        vertices.extend([-0.5, 0.5].map(|z| Vec3::new(outer * cos, outer * sin, z * height)));
+        let ([a, b], next) = ([2 + 2 * side, 3 + 2 * side], (side + 1) % SIDES);
+        let [c, d] = [2 + 2 * next, 3 + 2 * next];
+        facets.extend([[0, c, a], [1, b, d], [a, c, d], [a, d, b]]);
+    }
+    solid(&vertices, facets, X)
+}
+
 fn mesh(source: &MeshSource, X: &Pose) -> Result<Core, String> {
     let mesh = mesh_of(source)?;
-    let vertices = mesh.vertices().iter().map(|v| (X * Point3::from(*v)).coords).collect();
-    let moved = Mesh::new(vertices, mesh.facets().to_vec()).map_err(|error| error.to_string())?;
+    solid(mesh.vertices(), mesh.facets().to_vec(), X)
+}
+
+fn solid(vertices: &[Vec3], facets: Vec<[u32; 3]>, X: &Pose) -> Result<Core, String> {
+    let vertices = vertices.iter().map(|v| (X * Point3::from(*v)).coords).collect();
+    let moved = Mesh::new(vertices, facets).map_err(|error| error.to_string())?;
     Ok(Core::Mesh(Arc::new(Solid::new(&moved))))
 }
 

@@ -163,7 +163,7 @@ fn shape(placed: &PlacedShape, key: &str) -> Result<ShapeData, ViewError> {
         Shape::Box { size } => Form::Box { size: *size },
         Shape::Capsule { from, to, radius } => Form::Capsule { from: *from, to: *to, radius: *radius },
         Shape::HalfSpace { normal, offset } => Form::HalfSpace { normal: *normal, offset: *offset },
-        Shape::Mesh(source) => Form::Mesh(MeshData::of_source(source, &format!("{key}.shape"))?),
+        other => Form::Mesh(MeshData::of_shape(other, &format!("{key}.shape"))?),
     };
     Ok(ShapeData { pose: pose(&placed.pose, &format!("{key}.pose"))?, form })
 }

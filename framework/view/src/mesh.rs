@@ -2,8 +2,8 @@
 
 use crate::ViewError;
 use crate::number::nano;
-use regrasp_api::{Mesh, MeshSource, Vec3};
-use regrasp_world::WorldError;
+use regrasp_api::{Mesh, Shape, Vec3};
+use regrasp_world::shape_mesh;
 use serde::Serialize;
 
 /// The most facets of one page (some 1.5 MB). Scenes with more are drawn with fewer.
@@ -33,10 +33,10 @@ impl MeshData {
         self.vertices.chunks_exact(3).map(Vec3::from_column_slice).collect()
     }
 
-    pub(crate) fn of_source(source: &MeshSource, key: &str) -> Result<Self, ViewError> {
+    /// What is drawn of a shape by its facets.
+    pub(crate) fn of_shape(shape: &Shape, key: &str) -> Result<Self, ViewError> {
         // A plan stands alone: its meshes are inside, and no folder is looked into.
-        let mesh = source.mesh().map_err(|error| WorldError::mesh(key, error))?;
-        Ok(Self::new(&mesh))
+        Ok(Self::new(&shape_mesh(shape, key)?))
     }
 
     /// Draws with at most `most` facets, on the finest grid that does it: the vertices of one cell become one

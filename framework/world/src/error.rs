@@ -2,7 +2,8 @@
 
 use crate::bodies::BodyFault;
 use crate::hand::HandError;
-use regrasp_api::{MeshError, MeshSourceError, PoseError, Refusal, Refuse};
+use crate::shape::ShapeFault;
+use regrasp_api::{Departure, EndsError, MeshError, MeshSourceError, PoseError, Refusal, Refuse};
 use thiserror::Error;
 
 /// Why a description is refused: each message names the key or the file, the value and what is allowed.
@@ -19,6 +20,15 @@ pub enum WorldError {
         /// The allowed range, with its unit.
         range: String,
     },
+    /// Data that depart from their schema.
+    #[error(transparent)]
+    Departs(#[from] Departure),
+    /// Start or goals.
+    #[error(transparent)]
+    Ends(#[from] EndsError),
+    /// A shape of an obstacle or of a link.
+    #[error(transparent)]
+    Shape(#[from] ShapeFault),
     /// A value that cannot be used; the text says why.
     #[error("`{key}`: {reason}")]
     Value {
@@ -62,6 +72,9 @@ impl Refuse for WorldError {
             Self::Range { key, value, range } => {
                 Refusal::new("out-of-range", self).key(key).value(value).range(range)
             }
+            Self::Departs(departure) => departure.refusal(),
+            Self::Ends(error) => error.refusal(),
+            Self::Shape(fault) => fault.refusal(),
             Self::Value { key, .. } => Refusal::new("value", self).key(key),
             Self::Pose { key, error } => error.refusal().told(self).below(key),
             Self::Hand(error) => error.refusal().told(self).below("hand"),
@@ -90,12 +103,4 @@ impl WorldError {
     pub(crate) fn value(key: impl Into<String>, reason: impl Into<String>) -> Self {
         Self::Value { key: key.into(), reason: reason.into() }
     }
-}
-
-/// Refuses a number that is not finite or not in `low..=high`.
-pub(crate) fn check_range(key: &str, value: f64, low: f64, high: f64, unit: &str) -> Result<(), WorldError> {
-    if (low..=high).contains(&value) {
-        return Ok(());
-    }
-    Err(WorldError::range(key, value, format!("{low}..={high}{unit}")))
 }

@@ -14,10 +14,10 @@
 //! T. Siméon, J.-P. Laumond, C. Nissoux, "Visibility-based probabilistic roadmaps for motion planning",
 //! Advanced Robotics 2000, without its filter of nodes.
 
-use crate::nearest::{join_ends, untried_pair};
+use crate::nearest::connect_or_explore;
 use regrasp_api::{
-    Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, SearchPolicy,
-    Settings, SettingsError, Slot, check_settings, inventory,
+    Action, Build, CallError, Context, Entry, GraphStrategy, GraphView, SearchPolicy, Settings,
+    SettingsError, Slot, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -58,17 +58,7 @@ impl ConnectFirst {
 impl GraphStrategy for ConnectFirst {
     fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError> {
         context.count_call(Slot::GraphStrategy);
-        if graph.joined() {
-            return Ok(Action::Query);
-        }
-        if let Some(action) = join_ends(graph) {
-            return Ok(action);
-        }
-        if let Some((a, b)) = untried_pair(graph, self.settings.neighbours, context) {
-            return Ok(Action::Connect(a, b, EdgeKind::TransferRegrasp));
-        }
-        let (samples, most) = graph.samples();
-        Ok(if samples < most { Action::Explore(Link::Components) } else { Action::Stop })
+        Ok(connect_or_explore(graph, Some(self.settings.neighbours), context))
     }
 
     fn policy(&self) -> SearchPolicy {

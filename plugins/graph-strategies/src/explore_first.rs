@@ -14,10 +14,10 @@
 //! 1996 (construction, then expansion between components); Algorithms 2 and 3 are those of A. Sahbani, J.-P.
 //! Saut, V. Perdereau, SSD 2007.
 
-use crate::nearest::{join_ends, untried_pair};
+use crate::nearest::connect_or_explore;
 use regrasp_api::{
-    Action, Build, CallError, Context, EdgeKind, Entry, GraphStrategy, GraphView, Link, SearchPolicy,
-    Settings, SettingsError, Slot, check_settings, inventory,
+    Action, Build, CallError, Context, Entry, GraphStrategy, GraphView, SearchPolicy, Settings,
+    SettingsError, Slot, check_settings, inventory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -71,19 +71,7 @@ impl ExploreFirst {
 impl GraphStrategy for ExploreFirst {
     fn next(&self, graph: &dyn GraphView, context: &mut Context<'_>) -> Result<Action, CallError> {
         context.count_call(Slot::GraphStrategy);
-        if graph.joined() {
-            return Ok(Action::Query);
-        }
-        if let Some(action) = join_ends(graph) {
-            return Ok(action);
-        }
-        if !self.explores(graph)
-            && let Some((a, b)) = untried_pair(graph, self.settings.neighbours, context)
-        {
-            return Ok(Action::Connect(a, b, EdgeKind::TransferRegrasp));
-        }
-        let (samples, most) = graph.samples();
-        Ok(if samples < most { Action::Explore(Link::Components) } else { Action::Stop })
+        Ok(connect_or_explore(graph, (!self.explores(graph)).then_some(self.settings.neighbours), context))
     }
 
     fn policy(&self) -> SearchPolicy {

@@ -1,6 +1,6 @@
 //! What several strategies ask of the graph: who is near, and which pairs were not tried yet.
 
-use regrasp_api::{Action, ComponentId, Context, EdgeKind, GraphView, NodeId};
+use regrasp_api::{Action, ComponentId, Context, EdgeKind, GraphView, Link, NodeId};
 
 /// Random nodes that are looked at for an untried pair before the search for one is given up.
 const LOOKS: usize = 8;
@@ -13,6 +13,26 @@ pub(crate) fn nodes(graph: &dyn GraphView) -> impl Iterator<Item = NodeId> {
 /// The start, then the goals.
 pub(crate) fn ends(graph: &dyn GraphView) -> impl Iterator<Item = NodeId> {
     std::iter::once(graph.start()).chain(graph.goals().iter().copied())
+}
+
+/// Asks for a path where the ends are joined, or joins an end; then connects a pair that is near, where it may
+/// look at so many `neighbours`, or else explores.
+pub(crate) fn connect_or_explore(
+    graph: &dyn GraphView,
+    neighbours: Option<usize>,
+    context: &mut Context<'_>,
+) -> Action {
+    if graph.joined() {
+        return Action::Query;
+    }
+    if let Some(action) = join_ends(graph) {
+        return action;
+    }
+    if let Some((a, b)) = neighbours.and_then(|count| untried_pair(graph, count, context)) {
+        return Action::Connect(a, b, EdgeKind::TransferRegrasp);
+    }
+    let (samples, most) = graph.samples();
+    if samples < most { Action::Explore(Link::Components) } else { Action::Stop }
 }
 
 /// Start and goals enter the graph as new nodes do: by a path in GS_n to each component that has not been

@@ -1,6 +1,7 @@
 //! Contacts in scaled coordinates: about their centroid, lengths divided by their size, normals inward.
 
 use regrasp_api::{CallError, Cone, FingerIndex, Grasp, GraspContact, MAX_FINGERS, Vec3};
+use std::convert::Infallible;
 
 /// A twist, or a covector of wrenches, in scaled coordinates: `a` goes with forces, `b` with torques divided
 /// by length.
@@ -192,23 +193,21 @@ impl ScaledGrasp {
         lifted: Option<FingerIndex>,
         plugin: &'static str,
     ) -> Result<Self, CallError> {
-        let mut scaled = Self {
-            contacts: [ScaledContact::NOTHING; MAX_FINGERS],
-            count: 0,
-            center_O: Vec3::zeros(),
-            length: 1.0,
-        };
-        for contact in grasp.contacts().iter().filter(|contact| Some(contact.finger) != lifted) {
-            scaled.contacts[scaled.count] = unscaled(contact, plugin)?;
-            scaled.count += 1;
-        }
-        scaled.normalise();
-        Ok(scaled)
+        Self::put(grasp, lifted, |contact| unscaled(contact, plugin))
     }
 
     /// The contacts of `grasp` except those of `lifted`, whatever their cones: a polyhedral one is put down
     /// as frictionless.
     pub fn gather_points(grasp: &Grasp<'_>, lifted: Option<FingerIndex>) -> Self {
+        let put = Self::put(grasp, lifted, |contact| Ok::<_, Infallible>(ScaledContact::of(contact)));
+        put.unwrap_or_else(|never| match never {})
+    }
+
+    fn put<E>(
+        grasp: &Grasp<'_>,
+        lifted: Option<FingerIndex>,
+        of: impl Fn(&GraspContact<'_>) -> Result<ScaledContact, E>,
+    ) -> Result<Self, E> {
         let mut scaled = Self {
             contacts: [ScaledContact::NOTHING; MAX_FINGERS],
             count: 0,
@@ -216,11 +215,11 @@ impl ScaledGrasp {
             length: 1.0,
         };
         for contact in grasp.contacts().iter().filter(|contact| Some(contact.finger) != lifted) {
-            scaled.contacts[scaled.count] = ScaledContact::of(contact);
+            scaled.contacts[scaled.count] = of(contact)?;
             scaled.count += 1;
         }
         scaled.normalise();
-        scaled
+        Ok(scaled)
     }
 
     /// The contacts.

@@ -8,6 +8,24 @@ use crate::sharp::SharpEdges;
 use crate::walk::walk;
 use regrasp_api::{Contact, Mesh, Projection, Random, SurfacePath, Vec3};
 
+/// The answers of a surface that are its rolling's alone.
+macro_rules! rolling_answers {
+    () => {
+        fn sample(&self, random: &mut Random) -> Contact {
+            self.rolling.sample(random)
+        }
+
+        fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
+            self.rolling.project(p_OF, hint)
+        }
+
+        fn edge_distance(&self, contact: &Contact) -> f64 {
+            self.rolling.edge_distance(contact)
+        }
+    };
+}
+pub(crate) use rolling_answers;
+
 /// Samples before an object counts as having (almost) no area that a fingertip can touch.
 const MOST_SAMPLES: usize = 1000;
 

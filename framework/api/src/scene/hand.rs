@@ -132,15 +132,15 @@ pub struct JointDescription {
     pub upper: f64,
     /// Largest speed (rad/s; m/s where prismatic).
     #[serde(default = "default_velocity")]
-    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "rad/s; m/s where prismatic"))]
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "rad/s; m/s where prismatic"))]
     pub velocity: f64,
     /// Largest acceleration (rad/s²; m/s² where prismatic).
     #[serde(default = "default_acceleration")]
-    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "rad/s²; m/s² where prismatic"))]
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "rad/s²; m/s² where prismatic"))]
     pub acceleration: f64,
     /// Largest effort (N·m; N where prismatic).
     #[serde(default = "default_effort")]
-    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "N·m; N where prismatic"))]
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "N·m; N where prismatic"))]
     pub effort: f64,
     /// Which joint drives this one; absent where it moves by itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -1,5 +1,6 @@
 //! Tolerances, resolutions and budgets of a planning problem.
 
+use crate::{Pose, angle_between};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +30,14 @@ pub struct Tolerances {
     /// Largest angle of the object from a goal's orientation (rad).
     #[schemars(range(min = 1e-9, max = 1.0), extend("x-unit" = "rad"))]
     pub goal_angle: f64,
+}
+
+impl Tolerances {
+    /// Whether an object at one pose is where it is to be at the other.
+    pub fn coincide(&self, X_HA: &Pose, X_HB: &Pose) -> bool {
+        let apart = (X_HA.translation.vector - X_HB.translation.vector).norm();
+        apart <= self.goal_position && angle_between(&X_HA.rotation, &X_HB.rotation) <= self.goal_angle
+    }
 }
 
 impl Default for Tolerances {

@@ -8,6 +8,7 @@ mod mesh_source;
 mod object;
 mod pose;
 mod problem;
+mod shape;
 
 pub use contact_surface::*;
 pub use hand::*;
@@ -17,3 +18,4 @@ pub use mesh_source::*;
 pub use object::*;
 pub use pose::*;
 pub use problem::*;
+pub use shape::*;

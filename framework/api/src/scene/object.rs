@@ -1,51 +1,8 @@
-//! Shapes, objects and obstacles.
+//! Objects and obstacles.
 
-use super::{ContactSurface, MeshSource, PoseDescription};
+use super::{ContactSurface, ObjectShape, PoseDescription, Shape};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// A shape of a link, the palm or an obstacle.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum Shape {
-    /// A ball about the origin.
-    Sphere {
-        /// Radius (m).
-        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
-        radius: f64,
-    },
-    /// A box about the origin, along the axes.
-    Box {
-        /// Edge lengths (m).
-        #[schemars(inner(range(min = 1e-6, max = 1e3)), extend("x-unit" = "m"))]
-        size: [f64; 3],
-    },
-    /// All points within `radius` of a segment.
-    Capsule {
-        /// One end of the segment (m).
-        #[schemars(inner(range(min = -1e3, max = 1e3)), extend("x-unit" = "m"))]
-        from: [f64; 3],
-        /// The other end (m).
-        #[schemars(inner(range(min = -1e3, max = 1e3)), extend("x-unit" = "m"))]
-        to: [f64; 3],
-        /// Radius (m).
-        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
-        radius: f64,
-    },
-    /// Everything with `normal · x ≤ offset`.
-    HalfSpace {
-        /// Outward normal (a direction, of any length).
-        #[schemars(extend("examples" = [[0.0, 0.0, 1.0]]))]
-        #[schemars(extend("x-unit" = "1"))]
-        normal: [f64; 3],
-        /// Distance of the plane from the origin along the normal (m).
-        #[schemars(range(min = -1e3, max = 1e3), extend("x-unit" = "m"))]
-        #[schemars(example = 0.0)]
-        offset: f64,
-    },
-    /// A closed mesh.
-    Mesh(MeshSource),
-}
 
 /// A shape with its place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -70,84 +27,6 @@ pub struct ObstacleDescription {
     /// Its pose in the hand's frame.
     #[serde(default)]
     pub pose: PoseDescription,
-}
-
-/// The shape of the object: a primitive, turned into a closed mesh about the origin, or a mesh.
-///
-/// `facets` is the wished number of facets; the mesh has the nearest number that the shape's pattern allows.
-/// The planner and the verifier take the facets as the true surface.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum ObjectShape {
-    /// A ball.
-    Sphere {
-        /// Radius (m).
-        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
-        radius: f64,
-        /// Wished number of facets.
-        #[serde(default = "default_facets")]
-        #[schemars(range(min = 12, max = 2_000_000))]
-        facets: usize,
-    },
-    /// An ellipsoid along the axes.
-    Ellipsoid {
-        /// Half the length along x, y and z (m).
-        #[schemars(inner(range(min = 1e-6, max = 1e3)), extend("x-unit" = "m"))]
-        semi_axes: [f64; 3],
-        /// Wished number of facets.
-        #[serde(default = "default_facets")]
-        #[schemars(range(min = 12, max = 2_000_000))]
-        facets: usize,
-    },
-    /// A box along the axes: 12 facets.
-    Cuboid {
-        /// Edge lengths (m).
-        #[schemars(inner(range(min = 1e-6, max = 1e3)), extend("x-unit" = "m"))]
-        size: [f64; 3],
-    },
-    /// A cylinder along z.
-    Cylinder {
-        /// Radius (m).
-        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
-        radius: f64,
-        /// Length along z (m).
-        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
-        height: f64,
-        /// Wished number of facets.
-        #[serde(default = "default_facets")]
-        #[schemars(range(min = 12, max = 2_000_000))]
-        facets: usize,
-    },
-    /// A cylinder along z with half balls at its ends.
-    Capsule {
-        /// Radius (m).
-        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
-        #[schemars(example = 0.02)]
-        radius: f64,
-        /// Length of the cylindrical part along z (m).
-        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
-        #[schemars(example = 0.04)]
-        height: f64,
-        /// Wished number of facets.
-        #[serde(default = "default_facets")]
-        #[schemars(range(min = 12, max = 2_000_000))]
-        facets: usize,
-    },
-    /// A ring about z.
-    Torus {
-        /// Distance of the tube's centre from the z axis (m).
-        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
-        ring_radius: f64,
-        /// Radius of the tube (m).
-        #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "m"))]
-        tube_radius: f64,
-        /// Wished number of facets.
-        #[serde(default = "default_facets")]
-        #[schemars(range(min = 12, max = 2_000_000))]
-        facets: usize,
-    },
-    /// A mesh.
-    Mesh(MeshSource),
 }
 
 /// The object that the hand holds.
@@ -179,10 +58,6 @@ pub struct ObjectDescription {
 
 fn is_false(yes: &bool) -> bool {
     !yes
-}
-
-fn default_facets() -> usize {
-    1280
 }
 
 fn default_object_name() -> String {

@@ -3,9 +3,10 @@
 use super::{
     HandDescription, HoldDescription, Limits, ObjectDescription, ObstacleDescription, PoseDescription,
 };
-use crate::{Body, FingerIndex, Pose, Vec3};
+use crate::{Body, FingerIndex, Pose, PoseError, Refusal, Refuse, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 /// How one finger takes part in a given grasp.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -98,7 +99,63 @@ fn default_gravity() -> [f64; 3] {
 /// How far beyond start and goals the object may be sampled where the problem gives no workspace (m).
 const WORKSPACE_MARGIN: f64 = 0.015;
 
+/// Why start and goals make no task.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum EndsError {
+    /// A pose that cannot be read.
+    #[error("`{key}`: {error}")]
+    Pose {
+        /// The path of the key, such as `goal[1].pose`.
+        key: String,
+        /// What is wrong with it.
+        error: PoseError,
+    },
+    /// Two consecutive goals, or the start and the first goal, coincide.
+    #[error(
+        "`goal[{goal}].pose`: `goal[{goal}]` coincides with {}: there is nothing to do; a full turn is given \
+            as several goals, for example four quarters",
+        before(*goal)
+    )]
+    Coincide {
+        /// The later one.
+        goal: usize,
+    },
+}
+
+fn before(goal: usize) -> String {
+    if goal == 0 { "the start".into() } else { format!("`goal[{}]`", goal - 1) }
+}
+
+impl Refuse for EndsError {
+    fn refusal(&self) -> Refusal {
+        match self {
+            Self::Pose { key, error } => error.refusal().told(self).below(key),
+            Self::Coincide { goal } => Refusal::new("value", self).key(format!("goal[{goal}].pose")),
+        }
+    }
+}
+
 impl Problem {
+    /// The poses of start and goals, in turn. Consecutive ones that coincide, to the tolerances of a goal,
+    /// are refused where no grasp tells them apart.
+    pub fn poses(&self) -> Result<Vec<Pose>, EndsError> {
+        let read =
+            |pose: &PoseDescription, key: String| pose.pose().map_err(|error| EndsError::Pose { key, error });
+        let mut poses = vec![read(&self.start.pose, "start.pose".into())?];
+        let mut held = &self.start.grasp;
+        for (i, goal) in self.goal.iter().enumerate() {
+            let X_HG = read(&goal.pose, format!("goal[{i}].pose"))?;
+            let same_grasp = goal.grasp.is_none() || goal.grasp == *held;
+            if same_grasp && self.limits.tolerances.coincide(&poses[i], &X_HG) {
+                return Err(EndsError::Coincide { goal: i });
+            }
+            held = &goal.grasp;
+            poses.push(X_HG);
+        }
+        Ok(poses)
+    }
+
     /// Lowest and highest coordinates of the object's origin in H (m) for samples: the workspace, or a box
     /// about `poses`, those of start and goals.
     pub fn sampling_box(&self, poses: &[Pose]) -> (Vec3, Vec3) {

@@ -10,7 +10,16 @@ use serde_json::{Map, Value};
 
 /// Finds the first place, in the order of the keys, where `value` departs from `schema`.
 pub fn check_schema(value: &Value, schema: &Value) -> Result<(), Departure> {
-    Walk { root: schema }.check(value, schema, &KeyPath::default())
+    check_below(value, (schema, schema), &KeyPath::default())
+}
+
+/// The same for a schema within `root`, whose definitions it refers to; `path` is where the value stands.
+pub(super) fn check_below(
+    value: &Value,
+    (schema, root): (&Value, &Value),
+    path: &KeyPath,
+) -> Result<(), Departure> {
+    Walk { root }.check(value, schema, path)
 }
 
 /// Adds the schema's defaults for keys that `settings` leaves out, in tables within it too. A key that is

@@ -4,8 +4,7 @@ use super::effort::Effort;
 use super::follow::{Looks, Touch, Track};
 use super::route::Route;
 use crate::session::Work;
-use crate::shortest_path::Length;
-use regrasp_api::{CallError, Configuration, FingerIndex, FingerSet, Hint, PerFinger};
+use regrasp_api::{CallError, Configuration, FingerIndex, FingerSet, Hint, PerFinger, Total};
 use std::cmp::Reverse;
 
 /// The points of a station's fingers are looked at in so many rounds ...
@@ -78,7 +77,7 @@ impl<'a> Station<'a> {
             let q = self.configuration(pick, 0);
             all.push(Choice { q, moved, reach: self.looks.places[looks - 1] });
         }
-        all.sort_by_cached_key(|choice| Length(worth(choice.moved, choice.reach)));
+        all.sort_by_cached_key(|choice| Total(worth(choice.moved, choice.reach)));
         Ok(all)
     }
 
@@ -177,19 +176,11 @@ fn some_others(
     points: usize,
 ) -> Result<Vec<Track>, CallError> {
     let (task, context) = (work.task, &mut work.context);
-    let (model, radius) = (task.hand.finger(finger), task.hand.fingertip_radius());
     let mut found: Vec<Track> = Vec::new();
     let (mut tried, mut near) = (q.clone(), q.joints[finger]);
     for _ in 0..points {
-        let contact = task.surface.sample(&mut context.random);
-        let p_HF = q.X_HO.rotation * contact.tip_center(radius) + q.X_HO.translation.vector;
-        if (p_HF - model.p_HReach).norm_squared() > model.reach * model.reach {
-            continue;
-        }
-        for &joint in &model.spare {
-            near[joint] = context.random.range(model.joints[joint].lower, model.joints[joint].upper);
-        }
-        let Some(joints) = task.hand.inverse(finger, &p_HF, &near) else { continue };
+        let touch = task.draw_touch(finger, &q.X_HO, &mut near, &mut context.random);
+        let Some((contact, joints)) = touch else { continue };
         (tried.contacts[finger], tried.joints[finger]) = (Some(contact), joints);
         if task.admissible.admit_finger(task, &tried, finger, FingerSet::EMPTY, context)?.is_none() {
             found.push(looks.follow(task, finger, Touch { contact: Some(contact), joints }));

@@ -19,9 +19,8 @@ pub(crate) use route::Route;
 use crate::order::{has_order, regrasp_all};
 use crate::segments::moves;
 use crate::session::Work;
-use crate::shortest_path::Length;
 use choice::{Choice, Station};
-use regrasp_api::{CallError, Configuration};
+use regrasp_api::{CallError, Configuration, Total};
 use regrasp_plan::Segment;
 use roll::Roll;
 
@@ -107,7 +106,7 @@ impl Relay<'_> {
         open.min_by_key(|&node| {
             let Node { count, roll, tries, reach, .. } = &self.nodes[node];
             let place = if roll.is_complete { reach.max(roll.reached()) } else { roll.reached() };
-            Length(self.worth(*count, place) + *tries as f64)
+            Total(self.worth(*count, place) + *tries as f64)
         })
     }
 

@@ -8,7 +8,7 @@ use crate::error::PlanError;
 use crate::joined::joined;
 use crate::request::Request;
 use crate::session::{Call, Session};
-use crate::solve::{finger_choices, poses, with_task};
+use crate::solve::{finger_choices, with_task};
 use regrasp_api::{
     CallError, Configuration, Context, EdgeKind, FingerSet, PoseRequest, SearchPolicy, Task, angle_between,
 };
@@ -72,7 +72,7 @@ pub(super) fn with_gardener<T>(
     seed: u64,
     work: impl FnOnce(&Gardener<'_>) -> Result<T, PlanError>,
 ) -> Result<T, PlanError> {
-    let poses = poses(request.problem)?;
+    let poses = request.problem.poses()?;
     with_task(request, &poses, |task, session, policy| {
         let task = Task { landmarks: &[], ..*task };
         let session = Session { seed, ..*session };

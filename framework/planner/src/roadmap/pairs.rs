@@ -4,7 +4,7 @@ use super::grow::Gardener;
 use crate::error::PlanError;
 use crate::request::Request;
 use crate::session::Call;
-use crate::solve::{finger_choices, poses, with_task};
+use crate::solve::{finger_choices, with_task};
 use regrasp_api::{Configuration, PoseRequest, Task};
 
 /// Calls of the sampler in turn that look for one grasp.
@@ -22,7 +22,7 @@ pub struct Pair {
 /// Pairs of grasps as a roadmap's nodes are drawn, in streams of their own: the request's seed tells them
 /// apart. Fewer than `count` where the workspace has no grasps.
 pub fn pairs(request: &Request<'_>, count: usize) -> Result<Vec<Pair>, PlanError> {
-    let poses = poses(request.problem)?;
+    let poses = request.problem.poses()?;
     with_task(request, &poses, |task, session, policy| {
         let task = Task { landmarks: &[], ..*task };
         let choices = finger_choices(&task, policy.spare_fingers, policy.more_fingers)?;

@@ -40,7 +40,7 @@ pub struct Execution<'a> {
     /// Times runs, and ends them at the time limit.
     pub clock: &'a dyn Clock,
     /// Ends the study; runs that it ends are not kept.
-    pub cancel: &'a dyn Interrupt,
+    pub interrupt: &'a dyn Interrupt,
     /// Told how far the study is.
     pub progress: &'a dyn StudyProgress,
     /// Whether every call of a plugin is held against its role's laws; a breach makes the run an error.
@@ -56,7 +56,7 @@ pub struct Execution<'a> {
 
 /// Makes the runs that the folder does not hold yet, and keeps each there as soon as it has ended.
 ///
-/// True where all are there at the end, false where [`Execution::cancel`] came before.
+/// True where all are there at the end, false where [`Execution::interrupt`] came before.
 pub fn execute(
     prepared: &Prepared<'_>,
     folder: &mut Folder,
@@ -73,8 +73,8 @@ pub fn execute(
     keys.sort_by_key(|key| (key.scenario, key.seed, key.seed.wrapping_add(key.variant as u64) % variants));
     with.progress.begin(total - keys.len(), total);
     let job = Job {
-        machinery: Machinery::new(prepared, with.clock, with.cancel, with.audit),
-        cancel: with.cancel,
+        machinery: Machinery::new(prepared, with.clock, with.interrupt, with.audit),
+        interrupt: with.interrupt,
         keep_plans: with.keep_plans,
         isolate: with.isolate,
         isolate_all: with.isolate_all,
@@ -121,7 +121,7 @@ struct Ended {
 /// What the threads share.
 struct Job<'a> {
     machinery: Machinery<'a>,
-    cancel: &'a dyn Interrupt,
+    interrupt: &'a dyn Interrupt,
     keep_plans: bool,
     isolate: Option<&'a dyn Isolate>,
     isolate_all: bool,
@@ -139,7 +139,7 @@ struct Job<'a> {
 impl Job<'_> {
     /// Makes runs until none is left or the study ends.
     fn work(&self, ended: &mpsc::Sender<Ended>) {
-        while !self.cancel.interrupted() && !self.failed.load(Ordering::Relaxed) {
+        while !self.interrupt.interrupted() && !self.failed.load(Ordering::Relaxed) {
             let next = self.next.fetch_add(1, Ordering::Relaxed);
             let Some(run) = self.keys.get(next).and_then(|key| self.make(*key)) else { return };
             if ended.send(run).is_err() {
@@ -149,7 +149,7 @@ impl Job<'_> {
     }
 
     /// Makes a run, in a process of its own where that is wished or advisable; `None` where the study was
-    /// cancelled meanwhile.
+    /// interrupted meanwhile.
     fn make(&self, key: RunKey) -> Option<Ended> {
         let study = &self.machinery.prepared.study;
         let suspect = self.suspects.contains(&key);
@@ -160,7 +160,7 @@ impl Job<'_> {
                 Isolated::Died(how) => {
                     Made { record: RunRecord::of_crash(study.run_name(key), &how), plan: None }
                 }
-                Isolated::Cancelled => return None,
+                Isolated::Interrupted => return None,
             },
             None if suspect => {
                 let how = "an earlier process ended in its midst";
@@ -172,6 +172,6 @@ impl Job<'_> {
             }
         };
         made.plan = made.plan.filter(|_| self.keep_plans || study.keeps_plan(key));
-        (!self.cancel.interrupted()).then_some(Ended { key, made })
+        (!self.interrupt.interrupted()).then_some(Ended { key, made })
     }
 }

@@ -1,6 +1,6 @@
 //! Study files: comparisons that are too long for a command line, or that are to be kept.
 
-use super::{Change, DEFAULT_BAND, Hypotheses, Level, MeasureName, PRESET, Pairs, VariantDraft, factorial};
+use super::{Change, DEFAULT_BAND, Hypotheses, Level, MeasureName, PRESET, Pairs, VariantWish, factorial};
 use regrasp_api::{Refuse, Slot};
 use regrasp_host::{HostError, Preset, Registry, preset, slot_by_name};
 use regrasp_run::scenario::{
@@ -125,7 +125,7 @@ pub struct StudyRequest {
     /// The scenarios, with the changes for all variants made.
     pub scenarios: Vec<Scenario>,
     /// The variants.
-    pub variants: Vec<VariantDraft>,
+    pub variants: Vec<VariantWish>,
     /// How many seeds.
     pub seeds: Option<u64>,
     /// The first seed.
@@ -201,7 +201,7 @@ fn variants(
     document: &Document,
     content: &StudyFile,
     registry: &Registry,
-) -> Result<Vec<VariantDraft>, ScenarioError> {
+) -> Result<Vec<VariantWish>, ScenarioError> {
     if !content.vary.is_empty() && !content.variant.is_empty() {
         let message = "give either `vary`, of which all combinations are compared, or `variant`, not both";
         return Err(document.refuse(&key_path("variant"), message.to_owned()));
@@ -216,7 +216,7 @@ fn variants(
         let presets = preset_of(document, &table.plugins, &key)?.into_iter().collect();
         let changes = changes(&table.plugins);
         changes.iter().try_for_each(|change| check_plugin(document, change, &key, registry))?;
-        Ok(VariantDraft { name: table.name.clone(), presets, changes })
+        Ok(VariantWish { name: table.name.clone(), presets, changes })
     });
     drafts.collect()
 }

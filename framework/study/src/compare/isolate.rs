@@ -21,8 +21,8 @@ pub enum Isolated {
     Made(Box<Made>),
     /// The process ended before, as the text says.
     Died(String),
-    /// The study was cancelled meanwhile.
-    Cancelled,
+    /// The study was interrupted meanwhile.
+    Interrupted,
 }
 
 /// Makes runs in processes of their own; the command line does, a library starts none.

@@ -13,7 +13,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub(super) struct Machinery<'a> {
     pub prepared: &'a Prepared<'a>,
     clock: &'a dyn Clock,
-    cancel: &'a dyn Interrupt,
+    interrupt: &'a dyn Interrupt,
     audit: bool,
     /// How long reading the clock takes (s).
     tick_s: f64,
@@ -23,27 +23,27 @@ impl<'a> Machinery<'a> {
     pub fn new(
         prepared: &'a Prepared<'a>,
         clock: &'a dyn Clock,
-        cancel: &'a dyn Interrupt,
+        interrupt: &'a dyn Interrupt,
         audit: bool,
     ) -> Self {
-        Self { prepared, clock, cancel, audit, tick_s: timed::tick_s(clock) }
+        Self { prepared, clock, interrupt, audit, tick_s: timed::tick_s(clock) }
     }
 
-    /// Makes a run; `None` where the study was cancelled meanwhile.
+    /// Makes a run; `None` where the study was interrupted meanwhile.
     pub fn make(&self, key: RunKey) -> Option<Made> {
         let setup = self.prepared.setup(key).expect("a study has no runs of what it leaves out");
         let study = &self.prepared.study;
         let name = study.run_name(key);
         let limit_s = study.scenarios[key.scenario].problem.limits.budget.time_limit;
         let at_s = limit_s.map(|limit| self.clock.seconds() + limit);
-        let deadline = Deadline { clock: self.clock, at_s, cancel: self.cancel };
+        let deadline = Deadline { clock: self.clock, at_s, interrupt: self.interrupt };
         let made = catch_unwind(AssertUnwindSafe(|| self.run(setup, name, &deadline)));
         let (record, plan) = made.unwrap_or_else(|payload| {
             // What the panic left on this thread belongs to it, not to the next run.
             take_fault();
             (RunRecord::of_panic(name, panic_message(payload.as_ref())), None)
         });
-        (!self.cancel.interrupted()).then_some(Made { record, plan })
+        (!self.interrupt.interrupted()).then_some(Made { record, plan })
     }
 
     fn run(&self, setup: &Setup<'_>, name: RunName<'_>, stop: &Deadline<'_>) -> (RunRecord, Option<Plan>) {
@@ -72,33 +72,33 @@ impl<'a> Machinery<'a> {
 struct Deadline<'a> {
     clock: &'a dyn Clock,
     at_s: Option<f64>,
-    cancel: &'a dyn Interrupt,
+    interrupt: &'a dyn Interrupt,
 }
 
 impl Interrupt for Deadline<'_> {
     fn interrupted(&self) -> bool {
-        self.cancel.interrupted() || self.at_s.is_some_and(|at| self.clock.seconds() >= at)
+        self.interrupt.interrupted() || self.at_s.is_some_and(|at| self.clock.seconds() >= at)
     }
 }
 
 impl Stop for Deadline<'_> {
     fn cause(&self) -> StoppedBy {
-        if self.cancel.interrupted() { StoppedBy::Interrupt } else { StoppedBy::TimeLimit }
+        if self.interrupt.interrupted() { StoppedBy::Interrupt } else { StoppedBy::TimeLimit }
     }
 }
 
 /// Makes one run of a study here and now, as the process does that [`super::Isolate`] starts; `None` where it
-/// was cancelled.
+/// was interrupted.
 pub fn make_run(
     prepared: &Prepared<'_>,
     key: RunKey,
     clock: &dyn Clock,
-    cancel: &dyn Interrupt,
+    interrupt: &dyn Interrupt,
     audit: bool,
 ) -> Option<Made> {
     let study = &prepared.study;
     let sound = study.has(key) && !study.is_left_out(key.scenario, key.variant);
-    sound.then(|| Machinery::new(prepared, clock, cancel, audit).make(key)).flatten()
+    sound.then(|| Machinery::new(prepared, clock, interrupt, audit).make(key)).flatten()
 }
 
 fn panic_message(payload: &(dyn Any + Send)) -> &str {

@@ -25,7 +25,7 @@ fn along(a: &Vec3, b: &Vec3, other: &Core, X: &Pose) -> f64 {
 fn segments_keep_the_least_distance_of_their_points() {
     let mut random = Random::from_key(5, 0, 0, 0);
     let other = Core::Segment(Vec3::zeros(), Vec3::new(0.0, 0.05, 0.02));
-    for core in [torus(), cube(), other, Core::HalfSpace { n: Vec3::z(), offset: 0.01 }] {
+    for core in [torus(), cube(), other, Core::HalfSpace { n: Vec3::z(), offset: 0.01 }, cylinder()] {
         let mut apart = 0;
         for _ in 0..40 {
             let (X, a, b) = (pose(&mut random), random.direction() * 0.05, random.direction() * 0.05);
@@ -43,6 +43,44 @@ fn segments_keep_the_least_distance_of_their_points() {
         }
         assert!(apart > 10);
     }
+}
+
+fn cylinder() -> Core {
+    let placed = PlacedShape {
+        shape: Shape::Cylinder { radius: 0.02, height: 0.06 },
+        pose: PoseDescription { position: [0.01, 0.0, 0.0], ..Default::default() },
+    };
+    Core::of(&placed).unwrap().0
+}
+
+/// A point's distance from that cylinder, by its closed form.
+fn from_cylinder(p: &Vec3) -> f64 {
+    let (around, along) = ((p.x - 0.01).hypot(p.y) - 0.02, p.z.abs() - 0.03);
+    around.max(0.0).hypot(along.max(0.0)) + around.max(along).min(0.0)
+}
+
+#[test]
+fn cylinders_are_as_far_as_their_closed_form_says_and_never_farther() {
+    let (mut random, identity) = (Random::from_key(9, 0, 0, 0), Pose::identity());
+    for _ in 0..200 {
+        let p = random.direction() * random.range(0.0, 0.1);
+        let (exact, found) =
+            (from_cylinder(&p), distance(&Core::Point(p), &identity, &cylinder(), &identity, true));
+        assert!(found <= exact + 1e-12 && found > exact - 1e-6, "{found} {exact}");
+        // What surrounds a point closely is about as far.
+        let small = |half| Core::Cuboid { X: Pose::translation(p.x, p.y, p.z), half: Vec3::repeat(half) };
+        let found = distance(&small(1e-4), &identity, &cylinder(), &identity, true).max(0.0);
+        assert!((found - exact.max(0.0)).abs() < 2e-4, "{found} {exact}");
+        let n = random.direction();
+        let plane = Core::HalfSpace { n, offset: -0.1 };
+        let around = 0.02 * n.x.hypot(n.y) + 0.03 * n.z.abs();
+        let above = distance(&cylinder(), &identity, &plane, &identity, true);
+        let exact = 0.01 * n.x - around + 0.1;
+        assert!(above <= exact + 1e-12 && above > exact - 1e-6, "{above} {exact}");
+    }
+    let ring = Pose::translation(-0.04, 0.0, 0.0);
+    let apart = distance(&torus(), &ring, &cylinder(), &identity, true);
+    assert!(apart <= 0.0, "the cylinder goes through the ring: {apart}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::view::{Point, area, hull, see};
 use super::{Picture, Scene};
 use regrasp_api::{Configuration, Mesh, Pose, Shape, Vec3};
-use regrasp_world::{ChainHand, LinkFrame};
+use regrasp_world::{ChainHand, LinkFrame, shape_mesh};
 
 /// How many degrees of brightness a surface has.
 const SHADES: usize = 4;
@@ -83,14 +83,13 @@ impl Picture {
             Shape::Capsule { from, to, radius } => {
                 self.draw_line(&format!("{class} rg-line"), &[at(from), at(to)], 1e3 * radius);
             }
-            Shape::Box { size } => {
-                let corner = |k: usize| {
-                    std::array::from_fn(|axis| if k >> axis & 1 == 1 { 0.5 } else { -0.5 } * size[axis])
-                };
-                self.draw_outline(class, (0..8).map(|k| at(&corner(k))).collect());
-            }
-            Shape::Mesh(mesh) => self.draw_outline(class, mesh.vertices.iter().map(at).collect()),
             Shape::HalfSpace { .. } => {}
+            // What has no facets is not drawn: pictures judge nothing.
+            other => {
+                let corners = shape_mesh(other, "shape").map(|mesh| mesh.vertices().to_vec());
+                let seen = corners.unwrap_or_default().into_iter().map(|p| at(&p.into())).collect();
+                self.draw_outline(class, seen);
+            }
         }
     }
 

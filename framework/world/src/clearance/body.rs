@@ -1,10 +1,13 @@
 //! From descriptions to solids.
 
+use super::convex::Convex;
 use super::exact::{MeshSolid, Solid};
 use super::rod::{Bounds, Rod};
-use crate::error::{WorldError, check_range};
+use crate::error::WorldError;
+use crate::object::primitive_mesh;
+use crate::shape::check_shape;
 use nalgebra::Point3;
-use regrasp_api::{PlacedShape, Pose, PoseDescription, Shape, Vec3};
+use regrasp_api::{Form, Mesh, MeshSourceError, PlacedShape, Pose, PoseDescription, Primitive, Shape, Vec3};
 use std::sync::Arc;
 
 /// A solid placed in the frame of the body that it belongs to.
@@ -16,9 +19,6 @@ pub(crate) struct Placed {
     /// A rod in B that holds the solid; the solid itself if it is a rod. Meaningless for half-spaces.
     pub rod: Rod,
 }
-
-/// Lengths of shapes (m): beyond these, somebody has mistaken the unit by far.
-const LENGTHS: (f64, f64) = (1e-6, 1e3);
 
 impl Placed {
     /// Reads a shape at a pose; `key` is the path of both in their description.
@@ -92,41 +92,56 @@ fn around(bounds: &Bounds) -> Rod {
     Rod::new(center - along, center + along, across.norm())
 }
 
+/// Facets of what stands for a solid that is neither a rod nor a cuboid.
+const FACETS: usize = 1280;
+
 fn solid(shape: &Shape, key: &str) -> Result<Solid, WorldError> {
-    let length = |name: &str, value: f64| {
-        check_range(&format!("{key}.{name}"), value, LENGTHS.0, LENGTHS.1, " m").map(|()| value)
-    };
-    let finite = |name: &str, value: [f64; 3]| {
-        let far = !value.iter().all(|x| x.abs() <= LENGTHS.1);
-        let range = format!("three numbers of at most {} m", LENGTHS.1);
-        if far {
-            Err(WorldError::range(format!("{key}.{name}"), format!("{value:?}"), range))
-        } else {
-            Ok(value.into())
-        }
-    };
-    match shape {
-        Shape::Sphere { radius } => Ok(Solid::Rod(Rod::ball(Vec3::zeros(), length("radius", *radius)?))),
-        Shape::Box { size } => {
-            for (axis, &edge) in size.iter().enumerate() {
-                length(&format!("size[{axis}]"), edge)?;
-            }
-            Ok(Solid::Cuboid { half_size: Vec3::from(*size) / 2.0 })
-        }
-        Shape::Capsule { from, to, radius } => {
-            Ok(Solid::Rod(Rod::new(finite("from", *from)?, finite("to", *to)?, length("radius", *radius)?)))
-        }
-        Shape::HalfSpace { normal, offset } => {
-            let direction: Vec3 = finite("normal", *normal)?;
-            if direction.norm() <= 1e-9 {
-                return Err(WorldError::value(format!("{key}.normal"), "it must not be zero"));
-            }
-            check_range(&format!("{key}.offset"), *offset, -LENGTHS.1, LENGTHS.1, " m")?;
-            Ok(Solid::HalfSpace { normal: direction.normalize(), offset: *offset })
-        }
-        Shape::Mesh(source) => {
+    check_shape(shape, key)?;
+    if let Shape::Capsule { from, to, radius } = shape {
+        return Ok(Solid::Rod(Rod::new((*from).into(), (*to).into(), *radius)));
+    }
+    Ok(match shape.form() {
+        Form::Primitive(Primitive::Sphere { radius }, _) => Solid::Rod(Rod::ball(Vec3::zeros(), radius)),
+        Form::Primitive(Primitive::Cuboid { half_size }, _) => Solid::Cuboid { half_size },
+        Form::Primitive(primitive, _) => Solid::Mesh(Arc::new(MeshSolid::new(&hull(&primitive, key)?))),
+        Form::HalfSpace { normal, offset } => Solid::HalfSpace { normal, offset },
+        Form::Mesh(source) => {
             let mesh = source.mesh().map_err(|error| WorldError::mesh(key, error))?;
-            Ok(Solid::Mesh(Arc::new(MeshSolid::new(&mesh))))
+            Solid::Mesh(Arc::new(MeshSolid::new(&mesh)))
         }
+    })
+}
+
+/// A polytope that holds a convex solid: facets whose corners lie on it, as much larger as they would
+/// otherwise cut off.
+fn hull(primitive: &Primitive, key: &str) -> Result<Mesh, WorldError> {
+    let refused = |error| WorldError::mesh(key, MeshSourceError::Mesh(error));
+    let mesh = primitive_mesh(primitive, FACETS).map_err(refused)?;
+    let plane = |facet| {
+        let n = mesh.normal(facet);
+        (n, n.dot(&mesh.corners(facet)[0]))
+    };
+    let convex = Convex::around(*primitive, (0..mesh.facets().len() as u32).map(plane));
+    let convex = convex.ok_or_else(|| WorldError::value(key, "it is not convex; give it as a mesh"))?;
+    let vertices = mesh.vertices().iter().map(|v| v / convex.inner()).collect();
+    Mesh::new(vertices, mesh.facets().to_vec()).map_err(refused)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stands_for_a_cylinder_holds_it_and_is_hardly_larger() {
+        let (radius, half_height) = (0.008, 0.1);
+        let mesh = hull(&Primitive::Cylinder { radius, half_height }, "shape").unwrap();
+        for facet in 0..mesh.facets().len() as u32 {
+            let n = mesh.normal(facet);
+            let own = radius * n.x.hypot(n.y) + half_height * n.z.abs();
+            let height = n.dot(&mesh.corners(facet)[0]);
+            assert!(height >= own && height < 1.02 * own, "{height} {own}");
+        }
+        let ring = Primitive::Torus { ring_radius: 0.04, tube_radius: 0.015 };
+        assert!(hull(&ring, "shape").unwrap_err().to_string().contains("not convex"));
     }
 }

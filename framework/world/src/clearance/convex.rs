@@ -50,6 +50,11 @@ impl Convex {
         (all.inner > 0.0).then_some(all)
     }
 
+    /// How much of K is certainly body: from 0 to 1, of its lengths.
+    pub fn inner(&self) -> f64 {
+        self.inner
+    }
+
     /// The support function: the largest n·x over K (m).
     #[inline]
     pub fn height(&self, n: &Vec3) -> f64 {

@@ -1,19 +1,17 @@
 //! Checks of a hand's description, each with the path of its key.
 
 use super::HandError;
+use crate::shape::{check_direction, check_shape};
 use regrasp_api::{
-    BodyPair, FingerDescription, HandDescription, JointDescription, JointKind, MAX_FINGER_JOINTS,
-    MAX_FINGERS, Mimic, PlacedShape, Pose, PoseDescription, Shape, Vec3,
+    BodyPair, Departure, FingerDescription, Form, HandDescription, JointDescription, JointKind,
+    MAX_FINGER_JOINTS, MAX_FINGERS, Mimic, PlacedShape, Pose, PoseDescription, Shape, check_described,
+    check_field,
 };
 
-/// Radii that a fingertip may have (m).
-const RADIUS: (f64, f64) = (1e-4, 0.2);
 /// Largest absolute limit of a revolute joint (rad): two turns.
 const MAX_TURN: f64 = 4.0 * std::f64::consts::PI;
-/// Largest absolute limit of a prismatic joint (m).
+/// Largest absolute limit of a prismatic joint, and half the size of a shape (m).
 const MAX_TRAVEL: f64 = 10.0;
-/// Speed, acceleration and effort of a joint.
-const RATES: (f64, f64) = (1e-6, 1e6);
 const MILLIMETRES: &str = "; lengths are in metres";
 const DEGREES: &str = "; angles are in radians, lengths in metres";
 
@@ -29,7 +27,8 @@ pub(super) struct FingerPoses {
 /// Checks every number and name; the poses of each finger.
 pub(super) fn check_hand(hand: &HandDescription) -> Result<Vec<FingerPoses>, HandError> {
     check_name(&hand.name, "name")?;
-    check_range("fingertip_radius", hand.fingertip_radius, RADIUS, MILLIMETRES)?;
+    let key = "fingertip_radius";
+    check_field::<HandDescription>(key, &hand.fingertip_radius, key).map_err(hinted(MILLIMETRES))?;
     check_shapes("palm", &hand.palm)?;
     check_count("finger", hand.finger.len(), 1, MAX_FINGERS)?;
     let poses = hand
@@ -69,10 +68,7 @@ fn check_finger(key: &str, finger: &FingerDescription) -> Result<FingerPoses, Ha
 fn check_joint(key: &str, joint: &JointDescription) -> Result<Pose, HandError> {
     check_name(&joint.name, &format!("{key}.name"))?;
     let origin = check_pose(format!("{key}.origin"), &joint.origin)?;
-    let length = Vec3::from(joint.axis).norm();
-    if !(length.is_finite() && length > 1e-9) {
-        return Err(HandError::NoDirection { key: format!("{key}.axis"), value: joint.axis });
-    }
+    check_direction(&joint.axis, format!("{key}.axis"))?;
     let most = match joint.kind {
         JointKind::Revolute => MAX_TURN,
         JointKind::Prismatic => MAX_TRAVEL,
@@ -85,7 +81,8 @@ fn check_joint(key: &str, joint: &JointDescription) -> Result<Pose, HandError> {
     let rates =
         [("velocity", joint.velocity), ("acceleration", joint.acceleration), ("effort", joint.effort)];
     for (name, value) in rates {
-        check_range(&format!("{key}.{name}"), value, RATES, "; it must be positive")?;
+        check_field::<JointDescription>(name, &value, &format!("{key}.{name}"))
+            .map_err(hinted("; it must be positive"))?;
     }
     check_shapes(&format!("{key}.link"), &joint.link)?;
     Ok(origin)
@@ -130,8 +127,7 @@ fn check_mimic(
         let name = mimic.joint.clone();
         return Err(HandError::Driver { key: format!("{key}.mimic.joint"), name });
     };
-    check_range(&format!("{key}.mimic.multiplier"), mimic.multiplier, (-100.0, 100.0), "")?;
-    check_range(&format!("{key}.mimic.offset"), mimic.offset, (-MAX_TRAVEL, MAX_TRAVEL), DEGREES)?;
+    check_described(mimic, &format!("{key}.mimic")).map_err(hinted(DEGREES))?;
     let range = (joint.lower - DRIVEN, joint.upper + DRIVEN);
     for (end, position) in [("lower", driver.lower), ("upper", driver.upper)] {
         let driven = mimic.multiplier * position + mimic.offset;
@@ -181,36 +177,16 @@ fn check_shapes(key: &str, shapes: &[PlacedShape]) -> Result<(), HandError> {
     for (index, placed) in shapes.iter().enumerate() {
         let key = format!("{key}[{index}]");
         check_pose(format!("{key}.pose"), &placed.pose)?;
-        check_shape(&format!("{key}.shape"), &placed.shape)?;
+        check_link_shape(&format!("{key}.shape"), &placed.shape)?;
     }
     Ok(())
 }
 
-/// The numbers of a shape; a mesh is checked where it is read.
-fn check_shape(key: &str, shape: &Shape) -> Result<(), HandError> {
-    match shape {
-        Shape::Sphere { radius } => check_positive(&format!("{key}.radius"), *radius, MAX_TRAVEL),
-        Shape::Box { size } => size
-            .iter()
-            .enumerate()
-            .try_for_each(|(axis, &edge)| check_positive(&format!("{key}.size[{axis}]"), edge, MAX_TRAVEL)),
-        Shape::Capsule { from, to, radius } => {
-            for (name, end) in [("from", from), ("to", to)] {
-                if !end.iter().all(|x| x.is_finite()) {
-                    return Err(HandError::NotFinite { key: format!("{key}.{name}"), value: *end });
-                }
-            }
-            check_positive(&format!("{key}.radius"), *radius, MAX_TRAVEL)
-        }
-        Shape::HalfSpace { normal, offset } => {
-            let length = Vec3::from(*normal).norm();
-            if !(length.is_finite() && length > 1e-9) {
-                return Err(HandError::NoDirection { key: format!("{key}.normal"), value: *normal });
-            }
-            check_range(&format!("{key}.offset"), *offset, (-1e3, 1e3), MILLIMETRES)
-        }
-        Shape::Mesh(_) => Ok(()),
-    }
+/// A shape by itself, and that it is no larger than a hand can be.
+fn check_link_shape(key: &str, shape: &Shape) -> Result<(), HandError> {
+    check_shape(shape, key)?;
+    let Form::Primitive(primitive, _) = shape.form() else { return Ok(()) };
+    check_range(key, primitive.half_size().max(), (0.0, MAX_TRAVEL), MILLIMETRES)
 }
 
 fn check_pose(key: String, pose: &PoseDescription) -> Result<Pose, HandError> {
@@ -238,10 +214,7 @@ fn check_range(key: &str, value: f64, (low, high): (f64, f64), hint: &'static st
     Err(HandError::Range { key: key.into(), value, range: format!("{low}..={high}"), hint })
 }
 
-fn check_positive(key: &str, value: f64, most: f64) -> Result<(), HandError> {
-    if value > 0.0 && value <= most {
-        return Ok(());
-    }
-    let hint = "; it must be positive";
-    Err(HandError::Range { key: key.into(), value, range: format!("(0, {most}]"), hint })
+/// A departure from the schema, with what is probably wrong.
+fn hinted(hint: &'static str) -> impl Fn(Departure) -> HandError {
+    move |departure| HandError::Departs { departure, hint }
 }

@@ -1,6 +1,7 @@
 //! Why a hand's description is refused.
 
-use regrasp_api::{PoseError, Refusal, Refuse};
+use crate::shape::ShapeFault;
+use regrasp_api::{Departure, PoseError, Refusal, Refuse};
 use thiserror::Error;
 
 /// Why a hand's description is refused; each message names the key, the value, the allowed range and the
@@ -20,14 +21,17 @@ pub enum HandError {
         /// What is probably wrong, with its leading `; `, or nothing.
         hint: &'static str,
     },
-    /// A vector that must have a direction is zero or not finite.
-    #[error("`{key}` = {value:?} has no direction; give three finite numbers that are not all zero")]
-    NoDirection {
-        /// Path of the key, such as `finger[1].joint[2].axis`.
-        key: String,
-        /// The vector given.
-        value: [f64; 3],
+    /// Data that depart from their schema.
+    #[error("{departure}{hint}")]
+    Departs {
+        /// Where, and how.
+        departure: Departure,
+        /// What is probably wrong, with its leading `; `, or nothing.
+        hint: &'static str,
     },
+    /// A shape, or an axis.
+    #[error(transparent)]
+    Shape(#[from] ShapeFault),
     /// A vector with a coordinate that is NaN or infinite.
     #[error("`{key}` = {value:?} must be three finite numbers (m)")]
     NotFinite {
@@ -158,9 +162,11 @@ impl Refuse for HandError {
                 .value(value)
                 .range(range)
                 .remedy(hint.trim_start_matches("; ")),
-            Self::NoDirection { key, value: given } | Self::NotFinite { key, value: given } => {
-                value(key).value(format!("{given:?}"))
+            Self::Departs { departure, hint } => {
+                departure.refusal().told(self).remedy(hint.trim_start_matches("; "))
             }
+            Self::Shape(fault) => fault.refusal(),
+            Self::NotFinite { key, value: given } => value(key).value(format!("{given:?}")),
             Self::Pose { key, error } => error.refusal().told(self).below(key),
             Self::EmptyLimits { key, lower, upper } => {
                 value(&format!("{key}.lower")).value(lower).range(format!("..{upper}"))

@@ -1,5 +1,5 @@
 use super::*;
-use regrasp_api::{Mat3, MeshError};
+use regrasp_api::{Mat3, MeshError, ObjectShape, Vec3};
 use std::f64::consts::PI;
 
 const PRIMITIVES: [Primitive; 6] = [

@@ -1,10 +1,10 @@
 //! What can be told to be wrong with a problem without planning it.
 
-use crate::error::{WorldError, check_range};
+use crate::error::WorldError;
 use crate::hand::ChainHand;
 use regrasp_api::{
-    Budget, FingerGrasp, Hand, Limits, ObjectModel, ObjectShape, ObstacleDescription, Pose, PoseDescription,
-    Problem, Resolution, Tolerances, Workspace, angle_between,
+    FingerGrasp, Hand, Limits, ObjectModel, ObjectShape, ObstacleDescription, Pose, Problem, Workspace,
+    check_described, check_field,
 };
 use std::collections::BTreeMap;
 
@@ -13,17 +13,12 @@ use std::collections::BTreeMap;
 const TOO_LARGE: f64 = 50.0;
 const TOO_SMALL: f64 = 1.0 / 200.0;
 
-/// Allowed numbers: key, value, lowest, highest, unit.
-type Bound = (&'static str, f64, f64, f64, &'static str);
-
 /// Refuses what can be told to be wrong from the description alone: numbers out of range, goals that
 /// coincide, grasps that do not fit the hand, obstacles of one name. Hand, object and meshes are checked
 /// where they are built.
 pub fn check_problem(problem: &Problem) -> Result<(), WorldError> {
     check_limits(&problem.limits)?;
-    for (key, g) in ["gravity[0]", "gravity[1]", "gravity[2]"].into_iter().zip(problem.gravity) {
-        check_range(key, g, -1e3, 1e3, " m/s²")?;
-    }
+    check_field::<Problem>("gravity", &problem.gravity, "gravity")?;
     problem.workspace.as_ref().map_or(Ok(()), check_workspace)?;
     obstacle_names(&problem.obstacle)?;
     poses(problem)?;
@@ -32,58 +27,23 @@ pub fn check_problem(problem: &Problem) -> Result<(), WorldError> {
 
 /// Refuses tolerances, steps and budgets outside their ranges.
 pub fn check_limits(limits: &Limits) -> Result<(), WorldError> {
-    let bounds = tolerance_bounds(&limits.tolerances)
-        .into_iter()
-        .chain(resolution_bounds(&limits.resolution))
-        .chain(budget_bounds(&limits.budget));
-    for (key, value, low, high, unit) in bounds {
-        check_range(key, value, low, high, unit)?;
+    check_described(limits, "limits")?;
+    match limits.budget.time_limit {
+        // The check above cannot tell it from none.
+        Some(limit) if !limit.is_finite() => {
+            Err(WorldError::value("limits.budget.time_limit", "it must be a finite number (s)"))
+        }
+        _ => Ok(()),
     }
-    Ok(())
-}
-
-fn tolerance_bounds(tolerances: &Tolerances) -> [Bound; 6] {
-    let Tolerances { closure, slip, normal, clearance, goal_position, goal_angle } = *tolerances;
-    [
-        ("limits.tolerances.closure", closure, 1e-7, 1e-2, " m"),
-        ("limits.tolerances.slip", slip, 1e-7, 1e-2, " m"),
-        ("limits.tolerances.normal", normal, 1e-6, 0.5, " rad"),
-        ("limits.tolerances.clearance", clearance, 0.0, 0.1, " m"),
-        ("limits.tolerances.goal_position", goal_position, 1e-9, 0.1, " m"),
-        ("limits.tolerances.goal_angle", goal_angle, 1e-9, 1.0, " rad"),
-    ]
-}
-
-fn resolution_bounds(resolution: &Resolution) -> [Bound; 11] {
-    [
-        ("limits.resolution.grasp_step", resolution.grasp_step, 1e-5, 0.1, " m"),
-        ("limits.resolution.grasp_turn", resolution.grasp_turn, 1e-4, 1.0, " rad"),
-        ("limits.resolution.transfer_step", resolution.transfer_step, 1e-5, 0.1, " m"),
-        ("limits.resolution.transfer_turn", resolution.transfer_turn, 1e-4, 1.0, " rad"),
-        ("limits.resolution.regrasp_step", resolution.regrasp_step, 1e-5, 0.1, " m"),
-        ("limits.resolution.lift", resolution.lift, 1e-4, 0.2, " m"),
-        ("limits.resolution.retreat[0]", resolution.retreat[0], 0.0, 0.2, " m"),
-        ("limits.resolution.retreat[1]", resolution.retreat[1], 0.0, 0.2, " m"),
-        ("limits.resolution.clearance", resolution.clearance, 0.0, 0.05, " m"),
-        ("limits.resolution.edge_margin", resolution.edge_margin, 0.0, 0.1, " m"),
-        ("limits.resolution.friction_margin", resolution.friction_margin, 0.01, 1.0, ""),
-    ]
-}
-
-fn budget_bounds(budget: &Budget) -> [Bound; 3] {
-    [
-        ("limits.budget.max_nodes", budget.max_nodes as f64, 1.0, 1e7, ""),
-        ("limits.budget.smoothing", budget.smoothing as f64, 0.0, 1e6, ""),
-        ("limits.budget.time_limit", budget.time_limit.unwrap_or(1.0), 0.001, 1e7, " s"),
-    ]
 }
 
 fn check_workspace(given: &Workspace) -> Result<(), WorldError> {
-    const LOWER: [&str; 3] = ["workspace.lower[0]", "workspace.lower[1]", "workspace.lower[2]"];
-    const UPPER: [&str; 3] = ["workspace.upper[0]", "workspace.upper[1]", "workspace.upper[2]"];
-    for axis in 0..3 {
-        check_range(LOWER[axis], given.lower[axis], -1e3, 1e3, " m")?;
-        check_range(UPPER[axis], given.upper[axis], given.lower[axis], 1e3, " m")?;
+    check_described(given, "workspace")?;
+    for (axis, (&lower, &upper)) in given.lower.iter().zip(&given.upper).enumerate() {
+        if upper < lower {
+            let range = format!("{lower}.. m, above `workspace.lower[{axis}]`");
+            return Err(WorldError::range(format!("workspace.upper[{axis}]"), upper, range));
+        }
     }
     Ok(())
 }
@@ -130,42 +90,13 @@ pub fn check_units(hand: &ChainHand, object: &ObjectModel, shape: &ObjectShape) 
     Err(WorldError::value("object.shape", reason))
 }
 
-/// The poses of the start and the goals, in turn; no goals, and consecutive ones that coincide, are refused.
+/// The poses of the start and the goals, in turn; no goals are refused.
 pub(super) fn poses(problem: &Problem) -> Result<Vec<Pose>, WorldError> {
-    let read =
-        |pose: &PoseDescription, key: String| pose.pose().map_err(|error| WorldError::Pose { key, error });
-    let mut poses = vec![read(&problem.start.pose, "start.pose".into())?];
-    if problem.goal.is_empty() {
-        return Err(WorldError::value(
-            "goal",
-            "there is no goal; give at least one `[[goal]]` with its `pose`",
-        ));
+    let poses = problem.poses()?;
+    if poses.len() > 1 {
+        return Ok(poses);
     }
-    let mut before = ("the start".to_owned(), problem.start.grasp.as_ref());
-    for (i, goal) in problem.goal.iter().enumerate() {
-        let X_HG = read(&goal.pose, format!("goal[{i}].pose"))?;
-        let same_grasp = goal.grasp.is_none() || goal.grasp.as_ref() == before.1;
-        if same_grasp && coincide(&problem.limits.tolerances, &poses[i], &X_HG) {
-            return Err(coincidence(i, &before.0));
-        }
-        before = (format!("`goal[{i}]`"), goal.grasp.as_ref());
-        poses.push(X_HG);
-    }
-    Ok(poses)
-}
-
-fn coincide(tolerances: &Tolerances, X_HA: &Pose, X_HB: &Pose) -> bool {
-    let apart = (X_HA.translation.vector - X_HB.translation.vector).norm();
-    apart <= tolerances.goal_position
-        && angle_between(&X_HA.rotation, &X_HB.rotation) <= tolerances.goal_angle
-}
-
-fn coincidence(goal: usize, before: &str) -> WorldError {
-    let reason = format!(
-        "`goal[{goal}]` coincides with {before}: there is nothing to do; a full turn is given as several \
-            goals, for example four quarters"
-    );
-    WorldError::value(format!("goal[{goal}].pose"), reason)
+    Err(WorldError::value("goal", "there is no goal; give at least one `[[goal]]` with its `pose`"))
 }
 
 /// Refuses given grasps that do not fit the hand.

@@ -77,7 +77,7 @@ fn every_fault_is_refused_by_its_key() {
         (refusal(|p| p.obstacle[0].pose.angle_deg = Some(3.0)), "`obstacle[0].pose`"),
         (
             refusal(|p| p.obstacle[0].shape = Shape::Box { size: [1.0, f64::NAN, 1.0] }),
-            "`obstacle[0].shape.size[1]` = NaN",
+            "`obstacle[0].shape.size[1]`: infinity or NaN",
         ),
         (refusal(|p| p.obstacle[0].shape = half_space([0.0; 3])), "`obstacle[0].shape.normal`"),
         (refusal(|p| p.obstacle[0].shape = mesh("none.stl")), "none.stl"),
@@ -93,7 +93,7 @@ fn every_fault_is_refused_by_its_key() {
         (refusal(|p| p.goal[0].pose = p.start.pose.clone()), "`goal[0]` coincides with the start"),
         (refusal(|p| p.goal[0].grasp = grasp(3)), "`goal[0].grasp`: 3 entries"),
         (refusal(|p| p.start.grasp = grasp(4)), "`start.grasp[0].joints`"),
-        (refusal(|p| p.gravity[1] = f64::NAN), "`gravity[1]` = NaN"),
+        (refusal(|p| p.gravity[1] = f64::NAN), "`gravity[1]`: infinity or NaN"),
         (
             refusal(|p| p.workspace = Some(Workspace { lower: [0.0; 3], upper: [1.0, -1.0, 1.0] })),
             "`workspace.upper[1]` = -1",
@@ -101,7 +101,10 @@ fn every_fault_is_refused_by_its_key() {
         (refusal(|p| p.limits.resolution.friction_margin = 0.0), "`limits.resolution.friction_margin` = 0"),
         (refusal(|p| p.limits.tolerances.slip = -1.0), "`limits.tolerances.slip` = -1"),
         (refusal(|p| p.limits.budget.max_nodes = 0), "`limits.budget.max_nodes` = 0"),
-        (refusal(|p| p.limits.budget.time_limit = Some(f64::NAN)), "`limits.budget.time_limit` = NaN"),
+        (
+            refusal(|p| p.limits.budget.time_limit = Some(f64::NAN)),
+            "`limits.budget.time_limit`: it must be a finite number",
+        ),
     ];
     for (message, part) in messages {
         assert!(message.contains(part), "{message} lacks {part}");

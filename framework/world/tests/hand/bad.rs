@@ -110,7 +110,7 @@ fn shapes_are_checked() {
     let message = refusal(|hand| hand.finger[1].joint[2].link = placed(Shape::Sphere { radius: -1.0 }));
     assert_says(&message, &["`finger[1].joint[2].link[0].shape.radius` = -1"]);
     let capsule = Shape::Capsule { from: [0.0; 3], to: [0.0, f64::NAN, 0.0], radius: 0.01 };
-    assert_says(&refusal(|hand| hand.palm = placed(capsule)), &["`palm[0].shape.to`"]);
+    assert_says(&refusal(|hand| hand.palm = placed(capsule)), &["`palm[0].shape.to[1]`"]);
     let plane = Shape::HalfSpace { normal: [0.0; 3], offset: 0.0 };
     assert_says(&refusal(|hand| hand.palm = placed(plane)), &["`palm[0].shape.normal`"]);
 }

@@ -51,12 +51,7 @@ fn assert_slides(bench: &support::Bench, from: &Configuration, to: &Configuratio
 
 #[test]
 fn random_paths_are_closed_and_stable_at_every_state() {
-    for (name, object) in [
-        ("sphere", support::sphere()),
-        ("cube", support::cube()),
-        ("ellipsoid", support::ellipsoid()),
-        ("ring", support::ring()),
-    ] {
+    for (name, object) in support::objects() {
         for hand in [support::four_finger(), support::free_tips(), support::redundant()] {
             let bench = support::Bench::new(hand, object.clone());
             let (mut random, mut refused) = (Random::from_key(5, 7, 2, 1), Vec::new());

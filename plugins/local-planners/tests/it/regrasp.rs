@@ -71,12 +71,7 @@ fn elsewhere(
 
 #[test]
 fn random_regrasps_touch_at_their_ends_only() {
-    for (name, object) in [
-        ("sphere", support::sphere()),
-        ("cube", support::cube()),
-        ("ellipsoid", support::ellipsoid()),
-        ("ring", support::ring()),
-    ] {
+    for (name, object) in support::objects() {
         for hand in [support::four_finger(), support::free_tips(), support::redundant()] {
             let mut bench = support::Bench::new(hand, object.clone());
             bench.stability = Box::new(support::Glue);

@@ -65,32 +65,32 @@ pub(crate) fn floor(search: &Search<'_>, frame: &Frame) -> f64 {
     1.0 / (frame.norm(&centre.w) + centre.radius(search) * longest)
 }
 
-/// Quick bounds of Q1 in `frame` for a grasp that is force closure: the certified one from the centre, and
-/// the depth along the ellipsoid's axes.
-pub(crate) fn glance(search: &Search<'_>, frame: &Frame) -> (f64, f64) {
-    let Some(centre) = Centre::find(search, EXACTLY) else { return (0.0, f64::INFINITY) };
-    let inverse = centre.H.full().cholesky().map(|factor| factor.inverse());
-    let Some(inverse) = inverse else { return (0.0, f64::INFINITY) };
+/// The centre, the axes of the ellipsoid about it in `frame`, and the lower bound of Q1 that it certifies.
+fn around_centre(search: &Search<'_>, frame: &Frame) -> Option<(Twist, Matrix6<f64>, f64)> {
+    let centre = Centre::find(search, EXACTLY)?;
+    let inverse = centre.H.full().cholesky().map(|factor| factor.inverse())?;
     let ellipsoid = SymmetricEigen::new(frame.map * inverse * frame.map.transpose());
     let longest = ellipsoid.eigenvalues.max().max(0.0).sqrt();
     let lower = 1.0 / (frame.norm(&centre.w) + centre.radius(search) * longest);
+    Some((centre.w, ellipsoid.eigenvectors, lower))
+}
+
+/// Quick bounds of Q1 in `frame` for a grasp that is force closure: the certified one from the centre, and
+/// the depth along the ellipsoid's axes.
+pub(crate) fn glance(search: &Search<'_>, frame: &Frame) -> (f64, f64) {
+    let Some((_, axes, lower)) = around_centre(search, frame) else { return (0.0, f64::INFINITY) };
     let along = |axis: Vector6<f64>| search.body.gauge(&frame.twist(&axis.into()));
-    let depths = ellipsoid.eigenvectors.column_iter().map(|axis| along(axis.into()).min(along(-axis)));
+    let depths = axes.column_iter().map(|axis| along(axis.into()).min(along(-axis)));
     (lower, depths.fold(f64::INFINITY, f64::min))
 }
 
 /// Lower and upper bound of Q1 in `frame` for a grasp that is force closure.
 pub(crate) fn bracket(search: &Search<'_>, frame: &Frame) -> (f64, f64) {
-    let Some(centre) = Centre::find(search, EXACTLY) else { return (0.0, f64::INFINITY) };
-    let inverse = centre.H.full().cholesky().map(|factor| factor.inverse());
-    let Some(inverse) = inverse else { return (0.0, f64::INFINITY) };
-    let ellipsoid = SymmetricEigen::new(frame.map * inverse * frame.map.transpose());
-    let longest = ellipsoid.eigenvalues.max().max(0.0).sqrt();
-    let lower = 1.0 / (frame.norm(&centre.w) + centre.radius(search) * longest);
+    let Some((w, axes, lower)) = around_centre(search, frame) else { return (0.0, f64::INFINITY) };
     let mut farthest = 0.0_f64;
-    for axis in ellipsoid.eigenvectors.column_iter() {
+    for axis in axes.column_iter() {
         for sign in [1.0, -1.0] {
-            farthest = farthest.max(ascend(search, frame, &centre.w, axis * sign));
+            farthest = farthest.max(ascend(search, frame, &w, axis * sign));
         }
     }
     (lower, 1.0 / farthest)

@@ -1,7 +1,8 @@
 //! A simplicial polytope in R⁶ that grows by one point at a time.
 
 use super::{Point, dot};
-use std::cmp::Ordering;
+use regrasp_api::Total;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// How far beyond a facet a point must be to see it.
@@ -16,32 +17,6 @@ struct Facet {
     alive: bool,
 }
 
-/// A facet in the queue, nearest to the origin first; equal ones in their order of birth.
-struct Queued {
-    offset: f64,
-    facet: u32,
-}
-
-impl Ord for Queued {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.offset.total_cmp(&self.offset).then(other.facet.cmp(&self.facet))
-    }
-}
-
-impl PartialOrd for Queued {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Queued {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Queued {}
-
 /// A ridge of the horizon: five corners, the facet beyond that stays, and the place of the ridge there.
 struct Ridge {
     corners: [u32; 5],
@@ -53,7 +28,8 @@ struct Ridge {
 pub(super) struct Polytope {
     points: Vec<Point>,
     facets: Vec<Facet>,
-    queue: BinaryHeap<Queued>,
+    /// Facets with their offsets, the one nearest to the origin first; equal ones in their order of birth.
+    queue: BinaryHeap<Reverse<(Total, u32)>>,
     inside: Point,
     living: usize,
 }
@@ -88,10 +64,10 @@ impl Polytope {
     /// normal and offset.
     pub fn nearest(&mut self) -> Option<(u32, Point, f64)> {
         loop {
-            let top = self.queue.peek()?;
-            let facet = &self.facets[top.facet as usize];
+            let &Reverse((_, top)) = self.queue.peek()?;
+            let facet = &self.facets[top as usize];
             if facet.alive {
-                return Some((top.facet, facet.normal, facet.offset));
+                return Some((top, facet.normal, facet.offset));
             }
             self.queue.pop();
         }
@@ -171,7 +147,7 @@ impl Polytope {
         let (normal, offset) = self.plane(&corners);
         let facet = self.facets.len() as u32;
         self.facets.push(Facet { corners, neighbours, normal, offset, alive: true });
-        self.queue.push(Queued { offset, facet });
+        self.queue.push(Reverse((Total(offset), facet)));
         self.living += 1;
         facet
     }

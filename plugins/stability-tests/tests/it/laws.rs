@@ -5,8 +5,8 @@ use crate::support;
 use proptest::prelude::*;
 use regrasp_api::{Hint, Random, Rotation, Stability, StabilityTest, Vec3};
 use support::{
-    Family, Touch, assess, center_and_length, force_closure, grasp_of, margins, moved, random_touches,
-    scaled_friction, verdict, with_context,
+    Family, Touch, assess, center_and_length, depth_along, force_closure, grasp_of, margins, moved,
+    random_touches, scaled_friction, verdict, with_context,
 };
 
 fn touches_of(seed: u64, count: usize, family: usize) -> Vec<Touch> {
@@ -150,18 +150,7 @@ fn hints_made_of_nonsense_change_no_verdict() {
 /// Q1 by brute force: many random unit twists, each improved by a pattern search; an upper bound that gets
 /// close.
 fn dense_margin(touches: &[Touch], random: &mut Random) -> f64 {
-    let (center, length) = center_and_length(touches);
-    let value = |w: &[f64; 6]| {
-        let norm = w.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let (a, b) = (Vec3::new(w[0], w[1], w[2]), Vec3::new(w[3], w[4], w[5]));
-        let support = |touch: &Touch| {
-            let v = a + b.cross(&((touch.p - center) / length));
-            let normal = -v.dot(&touch.n);
-            let tangential = (v + touch.n * normal).norm();
-            normal + (touch.mu * tangential).hypot(touch.gamma / length * b.dot(&touch.n))
-        };
-        touches.iter().map(support).fold(f64::NEG_INFINITY, f64::max) / norm
-    };
+    let value = depth_along(touches);
     let mut best = f64::INFINITY;
     for _ in 0..12 {
         let mut w: [f64; 6] = std::array::from_fn(|_| random.normal());

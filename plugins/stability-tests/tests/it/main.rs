@@ -1,7 +1,6 @@
 //! The tests of grasps, seen from outside: one program, since each more is linked anew.
 #![allow(missing_docs)]
 
-mod compiler;
 mod conformance;
 mod degenerate;
 mod equilibrium;

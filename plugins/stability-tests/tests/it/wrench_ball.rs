@@ -8,8 +8,9 @@ use regrasp_api::{
 };
 use regrasp_stability_tests::{WrenchBall, WrenchBallSettings};
 use support::{
-    Family, Touch, assess, center_and_length, check_certificate, force_closure, grasp_of, moved, polyhedral,
-    pyramids, random_touches, scaled_friction, touch, verdict, verdict_of, with_context, wrench_ball,
+    Family, Touch, assess, center_and_length, check_certificate, depth_along, force_closure, grasp_of, moved,
+    polyhedral, pyramids, random_touches, scaled_friction, touch, verdict, verdict_of, with_context,
+    wrench_ball,
 };
 
 fn default_ball() -> WrenchBall {
@@ -27,17 +28,7 @@ fn closed_grasp(random: &mut Random, family: Family) -> Vec<Touch> {
 
 /// Q1 by a pattern search from many random directions: an upper bound, and near it.
 fn dense(touches: &[Touch], random: &mut Random) -> f64 {
-    let (center, length) = center_and_length(touches);
-    let value = |w: &[f64; 6]| {
-        let norm = w.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let (a, b) = (Vec3::new(w[0], w[1], w[2]), Vec3::new(w[3], w[4], w[5]));
-        let support = |touch: &Touch| {
-            let v = a + b.cross(&((touch.p - center) / length));
-            let normal = -v.dot(&touch.n);
-            normal + (touch.mu * (v + touch.n * normal).norm()).hypot(touch.gamma / length * b.dot(&touch.n))
-        };
-        touches.iter().map(support).fold(f64::NEG_INFINITY, f64::max) / norm
-    };
+    let value = depth_along(touches);
     (0..24)
         .map(|_| descend(&value, std::array::from_fn(|_| random.normal()), random))
         .fold(f64::INFINITY, f64::min)

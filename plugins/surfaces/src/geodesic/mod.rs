@@ -21,7 +21,7 @@ mod windows;
 
 use crate::hollows::Room;
 use crate::lift::Leg;
-use crate::rolling::Rolling;
+use crate::rolling::{Rolling, rolling_answers};
 use bound::{Ball, LowerBound};
 use regrasp_api::{
     Build, BuildError, Built, CallError, Contact, Context, Entry, Mesh, Parts, Projection, Random, Settings,
@@ -120,9 +120,7 @@ impl Geodesic {
 }
 
 impl SurfaceParam for Geodesic {
-    fn sample(&self, random: &mut Random) -> Contact {
-        self.rolling.sample(random)
-    }
+    rolling_answers!();
 
     fn geodesic(
         &self,
@@ -147,15 +145,7 @@ impl SurfaceParam for Geodesic {
         })
     }
 
-    fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
-        self.rolling.project(p_OF, hint)
-    }
-
     fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
         self.rolling.walk(from, direction_O, distance)
-    }
-
-    fn edge_distance(&self, contact: &Contact) -> f64 {
-        self.rolling.edge_distance(contact)
     }
 }

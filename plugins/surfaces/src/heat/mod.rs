@@ -39,7 +39,7 @@ mod sides;
 
 use crate::hollows::Room;
 use crate::lift::Leg;
-use crate::rolling::{Rolling, Spot, length};
+use crate::rolling::{Rolling, Spot, length, rolling_answers};
 use crate::strip::Strip;
 use descent::Descent;
 use field::Field;
@@ -216,9 +216,7 @@ impl Heat {
 }
 
 impl SurfaceParam for Heat {
-    fn sample(&self, random: &mut Random) -> Contact {
-        self.rolling.sample(random)
-    }
+    rolling_answers!();
 
     fn geodesic(
         &self,
@@ -243,15 +241,7 @@ impl SurfaceParam for Heat {
         })
     }
 
-    fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
-        self.rolling.project(p_OF, hint)
-    }
-
     fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
         self.rolling.walk(from, direction_O, distance)
-    }
-
-    fn edge_distance(&self, contact: &Contact) -> f64 {
-        self.rolling.edge_distance(contact)
     }
 }

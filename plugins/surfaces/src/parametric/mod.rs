@@ -41,7 +41,7 @@ pub use form::ClosedForm;
 
 use crate::hollows::Room;
 use crate::lift::Leg;
-use crate::rolling::Rolling;
+use crate::rolling::{Rolling, rolling_answers};
 use facets::{Corridor, Facets};
 use regrasp_api::{
     Build, BuildError, Built, CallError, Contact, Context, Entry, ObjectModel, Parts, Primitive, Projection,
@@ -197,9 +197,7 @@ fn is_flat(primitive: &Primitive) -> bool {
 }
 
 impl SurfaceParam for Parametric {
-    fn sample(&self, random: &mut Random) -> Contact {
-        self.rolling.sample(random)
-    }
+    rolling_answers!();
 
     fn geodesic(
         &self,
@@ -219,10 +217,6 @@ impl SurfaceParam for Parametric {
             corridor.follow(self.surfaces(), (&start, Some(&end)), curve, legs);
             Ok(self.rolling.roll((&start, &end), legs, path, room))
         })
-    }
-
-    fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
-        self.rolling.project(p_OF, hint)
     }
 
     fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
@@ -246,9 +240,5 @@ impl SurfaceParam for Parametric {
             }
             *from
         })
-    }
-
-    fn edge_distance(&self, contact: &Contact) -> f64 {
-        self.rolling.edge_distance(contact)
     }
 }

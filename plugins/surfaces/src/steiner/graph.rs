@@ -2,8 +2,8 @@
 
 use crate::polyhedron::{Polyhedron, next, previous};
 use crate::rolling::Spot;
-use regrasp_api::{CallError, Context, Vec3};
-use std::cmp::{Ordering, Reverse};
+use regrasp_api::{CallError, Context, Total, Vec3};
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Points between two questions whether to stop.
@@ -78,22 +78,11 @@ const UNKNOWN: Label = Label { epoch: 0, length: f64::INFINITY, before: START, f
 
 /// A point that waits, by the least length (m) of a path through it; ties by number, so that the order is
 /// certain.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Waiting {
-    least: f64,
+    least: Total,
     point: u32,
-    so_far: f64,
-}
-impl Eq for Waiting {}
-impl Ord for Waiting {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.least.total_cmp(&other.least).then(self.point.cmp(&other.point))
-    }
-}
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
+    so_far: Total,
 }
 
 /// Memory of a search, kept between calls; nothing of one call shows in the next.
@@ -140,10 +129,10 @@ impl Search<'_> {
         });
         let mut taken = 0;
         while let Some(Reverse(waiting)) = self.scratch.waiting.pop() {
-            if best.is_some_and(|found| found.length <= waiting.least) {
+            if best.is_some_and(|found| found.length <= waiting.least.0) {
                 break;
             }
-            if waiting.so_far > self.scratch.labels[waiting.point as usize].length {
+            if waiting.so_far.0 > self.scratch.labels[waiting.point as usize].length {
                 continue;
             }
             taken += 1;
@@ -172,9 +161,9 @@ impl Search<'_> {
         let p_OP = self.graph.at(waiting.point);
         for side in [edge, self.polyhedron.half_edges[edge as usize].twin] {
             let facet = side / 3;
-            self.arrive(best, waiting.point, facet, &p_OP, waiting.so_far);
+            self.arrive(best, waiting.point, facet, &p_OP, waiting.so_far.0);
             for other in [next(side), previous(side)] {
-                self.reach(other, waiting.point, facet, &p_OP, waiting.so_far);
+                self.reach(other, waiting.point, facet, &p_OP, waiting.so_far.0);
             }
         }
     }
@@ -200,7 +189,7 @@ impl Search<'_> {
             }
             *label = Label { epoch: self.scratch.epoch, length, before, facet };
             let least = length + (self.p_OT - p).norm();
-            self.scratch.waiting.push(Reverse(Waiting { least, point, so_far: length }));
+            self.scratch.waiting.push(Reverse(Waiting { least: Total(least), point, so_far: Total(length) }));
         }
     }
 }

@@ -31,7 +31,7 @@ mod graph;
 
 use crate::hollows::Room;
 use crate::lift::Leg;
-use crate::rolling::{Rolling, Spot};
+use crate::rolling::{Rolling, Spot, rolling_answers};
 use crate::strip::Strip;
 use graph::{Found, Graph, START, Scratch, Search};
 use regrasp_api::{
@@ -185,9 +185,7 @@ impl Steiner {
 }
 
 impl SurfaceParam for Steiner {
-    fn sample(&self, random: &mut Random) -> Contact {
-        self.rolling.sample(random)
-    }
+    rolling_answers!();
 
     fn geodesic(
         &self,
@@ -214,15 +212,7 @@ impl SurfaceParam for Steiner {
         })
     }
 
-    fn project(&self, p_OF: &Vec3, hint: Option<u32>) -> Projection {
-        self.rolling.project(p_OF, hint)
-    }
-
     fn walk(&self, from: &Contact, direction_O: &Vec3, distance: f64) -> Contact {
         self.rolling.walk(from, direction_O, distance)
-    }
-
-    fn edge_distance(&self, contact: &Contact) -> f64 {
-        self.rolling.edge_distance(contact)
     }
 }

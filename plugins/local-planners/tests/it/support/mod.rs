@@ -156,6 +156,11 @@ pub fn object(shape: &str) -> ObjectModel {
     regrasp_world::load_object(&description).unwrap()
 }
 
+/// Objects of each kind, with their names.
+pub fn objects() -> [(&'static str, ObjectModel); 4] {
+    [("sphere", sphere()), ("cube", cube()), ("ellipsoid", ellipsoid()), ("ring", ring())]
+}
+
 pub fn sphere() -> ObjectModel {
     object("{ kind = \"sphere\", radius = 0.03, facets = 320 }")
 }

@@ -165,6 +165,23 @@ pub fn moved(touches: &[Touch], R: &Rotation, t: Vec3) -> Vec<Touch> {
     touches.iter().map(|touch| Touch { p: R * touch.p + t, n: R * touch.n, ..*touch }).collect()
 }
 
+/// How deep the origin lies in the hull of the contacts' wrenches along a twist of any length; the least of
+/// all is Q1.
+pub fn depth_along(touches: &[Touch]) -> impl Fn(&[f64; 6]) -> f64 + '_ {
+    let (center, length) = center_and_length(touches);
+    move |w| {
+        let norm = w.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let (a, b) = (Vec3::new(w[0], w[1], w[2]), Vec3::new(w[3], w[4], w[5]));
+        let support = |touch: &Touch| {
+            let v = a + b.cross(&((touch.p - center) / length));
+            let normal = -v.dot(&touch.n);
+            let tangential = (v + touch.n * normal).norm();
+            normal + (touch.mu * tangential).hypot(touch.gamma / length * b.dot(&touch.n))
+        };
+        touches.iter().map(support).fold(f64::NEG_INFINITY, f64::max) / norm
+    }
+}
+
 /// The centroid of the contacts and the largest distance from it.
 pub fn center_and_length(touches: &[Touch]) -> (Vec3, f64) {
     let center = touches.iter().map(|touch| touch.p).sum::<Vec3>() / touches.len() as f64;

@@ -51,7 +51,7 @@ pub enum Level {
 
 /// A variant that is asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct VariantDraft {
+pub struct VariantWish {
     /// Its name.
     pub name: String,
     /// The presets that it begins with; more than one are refused.
@@ -60,7 +60,7 @@ pub struct VariantDraft {
     pub changes: Vec<Change>,
 }
 
-impl VariantDraft {
+impl VariantWish {
     /// The variant with these levels, named after them.
     fn of_levels(levels: Vec<Level>) -> Self {
         let mut variant = Self::default();
@@ -106,7 +106,7 @@ impl VariantDraft {
 
 /// The full factorial: a variant for every way to take one level of each factor. The first takes the first of
 /// each: the baseline.
-pub fn factorial(factors: &[Vec<Level>]) -> Vec<VariantDraft> {
+pub fn factorial(factors: &[Vec<Level>]) -> Vec<VariantWish> {
     let mut combinations: Vec<Vec<Level>> = vec![Vec::new()];
     for factor in factors {
         let with = |levels: &Vec<Level>| -> Vec<Vec<Level>> {
@@ -114,12 +114,12 @@ pub fn factorial(factors: &[Vec<Level>]) -> Vec<VariantDraft> {
         };
         combinations = combinations.iter().flat_map(with).collect();
     }
-    combinations.into_iter().map(VariantDraft::of_levels).collect()
+    combinations.into_iter().map(VariantWish::of_levels).collect()
 }
 
 /// A study that is asked for.
 #[derive(Clone, Debug)]
-pub struct Draft {
+pub struct StudyWish {
     /// See [`Study::command`].
     pub command: Vec<String>,
     /// See [`Study::versions`].
@@ -131,7 +131,7 @@ pub struct Draft {
     /// The part that is to be made; `None` for the whole.
     pub shard: Option<Shard>,
     /// What is to be compared, the baseline first.
-    pub variants: Vec<VariantDraft>,
+    pub variants: Vec<VariantWish>,
     /// The seeds.
     pub seeds: Seeds,
     /// Most seconds for one run.
@@ -159,15 +159,15 @@ impl Prepared<'_> {
 
 /// Builds every variant's plugins for every scenario, and refuses what cannot work.
 pub fn prepare<'a>(
-    draft: Draft,
+    wish: StudyWish,
     scenarios: &'a [Scenario],
     registry: &Registry,
 ) -> Result<Prepared<'a>, StudyError> {
-    check_names(&draft, scenarios)?;
+    check_names(&wish, scenarios)?;
     let mut left_out = Vec::new();
     let mut setups = Vec::new();
     for scenario in scenarios {
-        let row = draft.variants.iter().map(|variant| setup(&draft, scenario, variant, registry));
+        let row = wish.variants.iter().map(|variant| setup(&wish, scenario, variant, registry));
         let row = row.collect::<Result<Vec<_>, _>>()?;
         let gone = row.iter().filter_map(|built| built.as_ref().err()).cloned();
         left_out.extend(gone);
@@ -177,27 +177,27 @@ pub fn prepare<'a>(
         let reason = left_out.first().map_or(String::new(), |pair: &LeftOut| format!(": {}", pair.reason));
         return Err(StudyError::Empty { reason });
     }
-    let described = scenarios.iter().zip(&setups).map(|(scenario, row)| described(scenario, &draft, row));
+    let described = scenarios.iter().zip(&setups).map(|(scenario, row)| described(scenario, &wish, row));
     let study = Study {
         format: StudyFormat::RegraspStudy,
         version: STUDY_VERSION,
-        versions: draft.versions.clone(),
-        machines: vec![draft.machine.clone()],
-        started_s: draft.started_s,
-        shard: draft.shard,
+        versions: wish.versions.clone(),
+        machines: vec![wish.machine.clone()],
+        started_s: wish.started_s,
+        shard: wish.shard,
         scenarios: described.collect(),
-        varied: varied(&draft.variants),
-        variants: draft.variants.iter().map(VariantDraft::variant).collect(),
+        varied: varied(&wish.variants),
+        variants: wish.variants.iter().map(VariantWish::variant).collect(),
         left_out,
-        seeds: draft.seeds,
-        time_limit_s: draft.time_limit_s,
-        hypotheses: draft.hypotheses,
-        command: draft.command,
+        seeds: wish.seeds,
+        time_limit_s: wish.time_limit_s,
+        hypotheses: wish.hypotheses,
+        command: wish.command,
     };
     Ok(Prepared { study, setups })
 }
 
-fn check_names(draft: &Draft, scenarios: &[Scenario]) -> Result<(), StudyError> {
+fn check_names(wish: &StudyWish, scenarios: &[Scenario]) -> Result<(), StudyError> {
     let double = |names: Vec<&str>| {
         let mut seen = BTreeSet::new();
         names.into_iter().find(|name| !seen.insert(*name)).map(str::to_owned)
@@ -205,10 +205,10 @@ fn check_names(draft: &Draft, scenarios: &[Scenario]) -> Result<(), StudyError> 
     if let Some(name) = double(scenarios.iter().map(|scenario| scenario.name.as_str()).collect()) {
         return Err(StudyError::DoubleScenario { name });
     }
-    if let Some(name) = double(draft.variants.iter().map(|variant| variant.name.as_str()).collect()) {
+    if let Some(name) = double(wish.variants.iter().map(|variant| variant.name.as_str()).collect()) {
         return Err(StudyError::DoubleVariant { name });
     }
-    for variant in &draft.variants {
+    for variant in &wish.variants {
         let filled = variant.changes.iter().filter(|change| change.id.is_some());
         let filled = filled.map(|change| change.slot.name());
         // A preset counts as one more place that can be filled once.
@@ -224,7 +224,7 @@ fn check_names(draft: &Draft, scenarios: &[Scenario]) -> Result<(), StudyError> 
 pub const PRESET: &str = "preset";
 
 /// The slots that variants fill by themselves.
-fn varied(variants: &[VariantDraft]) -> Vec<Slot> {
+fn varied(variants: &[VariantWish]) -> Vec<Slot> {
     let changed = variants.iter().flat_map(|variant| &variant.changes).map(|change| change.slot);
     let mut slots: BTreeSet<Slot> = changed.collect();
     if variants.iter().any(|variant| !variant.presets.is_empty()) {
@@ -235,9 +235,9 @@ fn varied(variants: &[VariantDraft]) -> Vec<Slot> {
 
 /// A variant's plugins for a scenario; `Ok(Err(_))` where the pair is left out.
 fn setup<'a>(
-    draft: &Draft,
+    wish: &StudyWish,
     scenario: &'a Scenario,
-    variant: &VariantDraft,
+    variant: &VariantWish,
     registry: &Registry,
 ) -> Result<Result<Setup<'a>, LeftOut>, StudyError> {
     let error = match Setup::new(scenario, &variant.choices(&scenario.choices), registry) {
@@ -247,7 +247,7 @@ fn setup<'a>(
     let (name, of) = (scenario.name.clone(), variant.name.clone());
     let unsupported =
         matches!(&error, RunError::Host(HostError::Build { .. } | HostError::TooFewFingers { .. }));
-    match unsupported && draft.skip_unsupported {
+    match unsupported && wish.skip_unsupported {
         true => Ok(Err(LeftOut { scenario: name, variant: of, reason: error.to_string() })),
         false => {
             let error = Box::new(error);
@@ -256,25 +256,25 @@ fn setup<'a>(
     }
 }
 
-fn described(scenario: &Scenario, draft: &Draft, row: &[Option<Setup<'_>>]) -> StudyScenario {
+fn described(scenario: &Scenario, wish: &StudyWish, row: &[Option<Setup<'_>>]) -> StudyScenario {
     let plugin = |choice: &regrasp_host::Choice| PluginChoice {
         id: choice.id.clone(),
         settings: Value::Object(choice.settings.clone()),
     };
-    let plugins = |(variant, setup): (&VariantDraft, &Option<Setup<'_>>)| {
+    let plugins = |(variant, setup): (&VariantWish, &Option<Setup<'_>>)| {
         // What was left out could not be built, so that its settings are those that were asked for.
         let asked = || variant.choices(&scenario.choices);
         let choices = setup.as_ref().map_or_else(asked, |setup| setup.choices().clone());
         choices.iter().map(|(slot, choice)| (slot, plugin(choice))).collect()
     };
     let mut problem = scenario.problem.clone();
-    problem.limits.budget.time_limit = draft.time_limit_s.or(problem.limits.budget.time_limit);
+    problem.limits.budget.time_limit = wish.time_limit_s.or(problem.limits.budget.time_limit);
     StudyScenario {
         name: scenario.name.clone(),
         summary: scenario.summary.clone(),
         source: scenario.source.clone(),
         paper: scenario.paper.clone(),
-        plugins: draft.variants.iter().zip(row).map(plugins).collect(),
+        plugins: wish.variants.iter().zip(row).map(plugins).collect(),
         problem,
     }
 }
@@ -317,7 +317,7 @@ mod tests {
     fn plugins_are_chosen_before_their_settings_are_set() {
         let settings = change(Slot::Sampler, None, json!({"tries": 3}));
         let plugin = change(Slot::Sampler, Some("projection"), json!({}));
-        let variant = VariantDraft::of_levels(vec![settings, plugin]);
+        let variant = VariantWish::of_levels(vec![settings, plugin]);
         let choices = variant.choices(&Choices::default());
         let choice = choices.choice(Slot::Sampler);
         assert_eq!((choice.id.as_str(), &choice.settings["tries"]), ("projection", &json!(3)));
