@@ -184,7 +184,9 @@ def geodesics(count: int) -> list[tuple]:
         paths = [solver.find_geodesic_path(*pair) for pair in ends.T[:few] if pair[0] != pair[1]]
         theirs = [np.linalg.norm(np.diff(path, axis=0), axis=1).sum() for path in paths]
         own = lengths[:few][ends[0][:few] != ends[1][:few]]
-        assert (own < 1.000_001 * np.array(theirs)).all() and np.median(own / theirs) > 0.999
+        shares = own / theirs
+        # Ours begin and end at contacts of a ball, a hair beside the vertices.
+        assert shares.max() < 1.000_2 and np.median(shares) > 0.999
         rows.append((
             f"geodesic on a mesh, {len(ball.faces)} facets",
             seconds(lambda bench=bench, a=a, b=b: bench.geodesics(a, b), len(a)),
@@ -200,12 +202,10 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=20_000, help="calls in a batch")
     count = parser.parse_args().count
     print("| piece | ours, per call (µs) | peer | per call (µs) | times faster |\n|---|---:|---|---:|---:|")
-    for piece, ours, peer, theirs in itertools.chain(
-        closure(count), kinematics(count), surfaces(count), geodesics(count)
-    ):
-        print(
-            f"| {piece} | {1e6 * ours:.2f} | {peer} | {1e6 * theirs:.1f} | {theirs / ours:.0f} |", flush=True
-        )
+    for rows in (closure, kinematics, surfaces, geodesics):
+        for piece, ours, peer, theirs in rows(count):
+            faster = f"{theirs / ours:.0f}" if theirs > ours else f"{theirs / ours:.2f}"
+            print(f"| {piece} | {1e6 * ours:.2f} | {peer} | {1e6 * theirs:.1f} | {faster} |", flush=True)
 
 
 if __name__ == "__main__":

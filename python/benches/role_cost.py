@@ -3,9 +3,9 @@
     pip install regrasp
     python role_cost.py [--rounds N]
 
-`Bench.margins` asks a stability test for a verdict and a margin of each configuration, both in Python here; the same
-two methods are then called from Python on a grasp that is there already, and the difference is what a call costs
-on its way from the planner and back, the grasp that it is handed included.
+`Bench.margins` asks a stability test for a verdict and a margin of each configuration, both in Python here;
+the same two methods are then called from Python on a grasp that is there already, and the difference is
+what a call costs on its way from the planner and back, the grasp that it is handed included.
 """
 
 import argparse
@@ -31,7 +31,8 @@ def main() -> None:
     rounds = parser.parse_args().rounds
     configurations = rg.sample_grasps("sphere", 100, seed=1) * 20
     bench, count = rg.Bench("sphere", use={"stability-test": Nothing}), len(configurations)
-    plugin, grasp = Nothing(), rg.Grasp([[0.03, 0, 0], [-0.03, 0, 0], [0, 0.03, 0]], [[1, 0, 0], [-1, 0, 0], [0, 1, 0]])
+    normals = [[1, 0, 0], [-1, 0, 0], [0, 1, 0]]
+    plugin, grasp = Nothing(), rg.Grasp(normals, normals)
     through, own = [], []
     for _ in range(rounds):
         start = time.process_time()

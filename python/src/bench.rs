@@ -213,8 +213,9 @@ impl Bench {
         PyArray1::from_vec(py, flat).reshape([count, 2])
     }
 
-    /// What holds the object at rest in configurations, by forces that need at most `share` of the friction:
-    /// `forces` (n, fingers, 3) in O, `efforts` (n, joints), and (n,) `friction_share`, `effort_share`, `mass`.
+    /// What holds the object at rest in configurations, by forces that need at most `share` of the
+    /// friction: `forces` (n, fingers, 3) in O, `efforts` (n, joints), and (n,) `friction_share`,
+    /// `effort_share`, `mass`.
     fn holds<'py>(
         &self,
         py: Python<'py>,
@@ -278,8 +279,8 @@ impl Bench {
     }
 }
 
-/// Where a local planner is to go: the object to a pose, all fingers to another grasp, or one finger to where it
-/// is there.
+/// Where a local planner is to go: the object to a pose, all fingers to another grasp, or one finger to
+/// where it is there.
 #[derive(FromPyObject)]
 pub enum End {
     /// The finger moves alone.

@@ -42,7 +42,8 @@ impl Grasps<'_> {
         grasp
     }
 
-    /// Calls `each` with the number of every grasp in turn; with `part` of them between two looks for signals.
+    /// Calls `each` with the number of every grasp in turn; with `part` of them between two looks for
+    /// signals.
     fn each(
         &self,
         py: Python<'_>,

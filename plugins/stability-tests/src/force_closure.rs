@@ -93,13 +93,20 @@ impl ForceClosure {
     /// The same for contacts that were gathered already.
     pub(crate) fn decide(&self, grasp: &ScaledGrasp, hint: &mut Hint) -> Stability {
         match in_closed_form(grasp) {
-            Some(closed) => if closed { Stability::Stable } else { Stability::Unstable },
+            Some(closed) => {
+                if closed {
+                    Stability::Stable
+                } else {
+                    Stability::Unstable
+                }
+            }
             None => self.search(grasp, hint),
         }
     }
 
     /// Forces on the object (N, in O) at the contacts of `grasp`, in turn, that balance each other strictly
-    /// inside every cone, the normal forces adding up to 1 N; `false`, and none, where the grasp is not closed.
+    /// inside every cone, the normal forces adding up to 1 N; `false`, and none, where the grasp is not
+    /// closed.
     ///
     /// The proof alone, about as fast as the verdict: [`StabilityTest::assess`] measures the margin too.
     /// Cones must be elliptic.

@@ -172,8 +172,8 @@ class Holding:
     efforts : ndarray, (N, J)
         What the joints give for them, Jᵀf, weights of links apart (N·m; N).
     friction_share : ndarray, (N,)
-        The largest share of the friction that a force relies on. Above 1 no forces within friction and efforts
-        hold the weight, and these are the nearest.
+        The largest share of the friction that a force relies on. Above 1 no forces within friction and
+        efforts hold the weight, and these are the nearest.
     effort_share : ndarray, (N,)
         The largest share of its effort limit that a joint gives.
     mass : ndarray, (N,)
@@ -277,9 +277,10 @@ class Bench:
     def holds(self, configurations: Sequence[Configuration], *, share: float = 1.0) -> Holding:
         """What holds the object's weight at rest in configurations, and how much they would carry.
 
-        Forces are the analytic centre of those within the joints' efforts that need at most `share` (0.01 to 1)
-        of the friction; where there are none, those that need least of it. Source: Han, Trinkle, Li, "Grasp
-        analysis as linear matrix inequality problems", T-RA 2000. Contacts must share one elliptic cone.
+        Forces are the analytic centre of those within the joints' efforts that need at most `share` (0.01
+        to 1) of the friction; where there are none, those that need least of it. Source: Han, Trinkle, Li,
+        "Grasp analysis as linear matrix inequality problems", T-RA 2000. Contacts must share one elliptic
+        cone.
         """
         part = float(numbers_of("share", share))
         if not 0.01 <= part <= 1:
@@ -302,8 +303,8 @@ class Bench:
         starts : Configuration, or sequence of N
             Where to begin.
         ends : Configuration, array_like (4, 4), or sequence of N
-            A configuration of the same fingers is reached within GS_n, its contacts sliding; or, with `finger`,
-            by that finger alone. A pose X_HO is where the object goes, the fingertips rolling.
+            A configuration of the same fingers is reached within GS_n, its contacts sliding; or, with
+            `finger`, by that finger alone. A pose X_HO is where the object goes, the fingertips rolling.
         finger : int, optional
             The finger that regrasps.
         seed : int

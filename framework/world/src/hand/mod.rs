@@ -134,8 +134,8 @@ impl ChainHand {
         self.fingers[finger.index()].chain.frames(joints, room)
     }
 
-    /// The fingertip's centre in H (m), as [`Hand::tip_center`] has it, for each row of joint positions of the
-    /// finger, into three columns.
+    /// The fingertip's centre in H (m), as [`Hand::tip_center`] has it, for each row of joint positions of
+    /// the finger, into three columns.
     ///
     /// Some 5 ns a joint.
     pub fn tip_centers(

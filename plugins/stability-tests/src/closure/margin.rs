@@ -134,8 +134,8 @@ impl Centre {
     }
 }
 
-/// How far ascents go: relative gap of each point to the farthest one along its covector, and relative rise of
-/// the norm below which a local maximum is reached.
+/// How far ascents go: relative gap of each point to the farthest one along its covector, and relative rise
+/// of the norm below which a local maximum is reached.
 #[derive(Clone, Copy)]
 struct Precision {
     gap: f64,
@@ -151,8 +151,8 @@ const PROMISING: f64 = 0.9;
 /// Ascents whose directions have this product, or more, end at the same place.
 const SAME: f64 = 0.999;
 
-/// The largest norm over Ω that ascents from both ends of the ellipsoid's axes find: all of them roughly first,
-/// then the best ones, those that end at different places, to the end.
+/// The largest norm over Ω that ascents from both ends of the ellipsoid's axes find: all of them roughly
+/// first, then the best ones, those that end at different places, to the end.
 fn longest_point(search: &Search<'_>, frame: &Frame, centre: &Twist, axes: &Matrix6<f64>) -> f64 {
     let start = |end: usize| axes.column(end / 2) * if end.is_multiple_of(2) { 1.0 } else { -1.0 };
     let mut rough: [(f64, Vector6<f64>); 12] =
