@@ -21,9 +21,12 @@ pub fn of_scenario(scenario: &str) -> Vec<PathBuf> {
     let (named, packages) = named_in(&path);
     let mut files = vec![path];
     for file in named {
-        match file.extension().is_some_and(|extension| extension == "toml") {
-            true => files.extend(named_in(&file).0),
-            false => files.extend(named_files(&file, &packages)),
+        let extension = file.extension().unwrap_or_default().to_ascii_lowercase();
+        match extension.to_str() {
+            Some("toml") => files.extend(named_in(&file).0),
+            // Large, and they name nothing.
+            Some("stl" | "ply" | "obj" | "glb" | "3mf") => {}
+            _ => files.extend(named_files(&file, &packages)),
         }
         files.push(file);
     }

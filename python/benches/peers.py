@@ -1,6 +1,6 @@
 """The package's pieces beside the best Python peer of each: seconds per call, ours in batches.
 
-    pip install regrasp scipy pin trimesh rtree
+    pip install regrasp scipy pin trimesh rtree potpourri3d
     python peers.py [--count N]
 
 A peer is called as its users call it: one grasp or posture at a time where it has no batches (scipy,
@@ -15,6 +15,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pinocchio
+import potpourri3d
 import regrasp as rg
 import trimesh
 from scipy.optimize import nnls
@@ -169,15 +170,42 @@ def surfaces(count: int) -> list[tuple]:
     return rows
 
 
+def geodesics(count: int) -> list[tuple]:
+    """Between vertices; the peer flips edges, which finds a shortest path of those nearby."""
+    rows = []
+    for subdivisions in (3, 5):
+        ball = trimesh.creation.icosphere(subdivisions=subdivisions, radius=0.03)
+        bench = rg.Bench(rg.Scenario(object=ball, start=rg.pose(z=0.085), goals=[rg.pose(z=0.086)]))
+        points, _ = bench.closest_points(4 / 3 * ball.vertices)
+        ends = np.random.default_rng(9).integers(len(ball.vertices), size=(2, min(count, 2000)))
+        a, b = (rg.SurfacePoints(points.facets[i], points.points[i], points.normals[i]) for i in ends)
+        lengths, few = bench.geodesics(a, b), min(len(a), FEW)
+        solver = potpourri3d.EdgeFlipGeodesicSolver(ball.vertices, ball.faces)
+        paths = [solver.find_geodesic_path(*pair) for pair in ends.T[:few] if pair[0] != pair[1]]
+        theirs = [np.linalg.norm(np.diff(path, axis=0), axis=1).sum() for path in paths]
+        own = lengths[:few][ends[0][:few] != ends[1][:few]]
+        shares = own / theirs
+        # Ours begin and end at contacts of a ball, a hair beside the vertices.
+        assert shares.max() < 1.000_2 and np.median(shares) > 0.999
+        rows.append((
+            f"geodesic on a mesh, {len(ball.faces)} facets",
+            seconds(lambda bench=bench, a=a, b=b: bench.geodesics(a, b), len(a)),
+            "potpourri3d, edge flips",
+            seconds(lambda solver=solver, pairs=ends.T[:few]: [
+                solver.find_geodesic_path(*pair) for pair in pairs if pair[0] != pair[1]], few),
+        ))  # fmt: skip
+    return rows
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=20_000, help="calls in a batch")
     count = parser.parse_args().count
     print("| piece | ours, per call (µs) | peer | per call (µs) | times faster |\n|---|---:|---|---:|---:|")
-    for piece, ours, peer, theirs in itertools.chain(closure(count), kinematics(count), surfaces(count)):
-        print(
-            f"| {piece} | {1e6 * ours:.2f} | {peer} | {1e6 * theirs:.1f} | {theirs / ours:.0f} |", flush=True
-        )
+    for rows in (closure, kinematics, surfaces, geodesics):
+        for piece, ours, peer, theirs in rows(count):
+            faster = f"{theirs / ours:.0f}" if theirs > ours else f"{theirs / ours:.2f}"
+            print(f"| {piece} | {1e6 * ours:.2f} | {peer} | {1e6 * theirs:.1f} | {faster} |", flush=True)
 
 
 if __name__ == "__main__":

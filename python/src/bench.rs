@@ -1,8 +1,9 @@
 //! A scenario with its plugins built, for calls by hand of many points and grasps at once.
 
 use crate::errors;
+use crate::holding::{Asker, Columns as Holding};
 use crate::pieces::triples;
-use crate::roles::{Configuration, Stash, fits, with_stash};
+use crate::roles::{Configuration, Stash, fits, to_pose, with_stash};
 use crate::run::Changes;
 use crate::scenario::{Scenario, registry};
 use crate::watch::{Watch, beside};
@@ -10,7 +11,8 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArra
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use regrasp::api::{
-    CallError, Contact, Context, FingerSet, Interrupt, PoseRequest, Random, SurfacePath, Vec3, unless_fault,
+    self, CallError, Contact, Context, FingerIndex, FingerSet, Interrupt, Path, PoseRequest, Random,
+    SurfacePath, Vec3, unless_fault,
 };
 use regrasp::run::{RunError, Workbench};
 use std::sync::Arc;
@@ -57,6 +59,26 @@ impl Bench {
         let (bench, theirs) = (Arc::clone(&self.bench), Arc::clone(&watch));
         let done = beside(py, &watch, None, move || unless_fault(job(&bench, &theirs)))?;
         done.map_err(|error| errors::run(py, &RunError::Call(error), &self.stash))
+    }
+}
+
+impl Bench {
+    /// Refuses configurations of another hand.
+    fn check<'a>(
+        &self,
+        py: Python<'_>,
+        key: &str,
+        mut configurations: impl Iterator<Item = &'a Configuration>,
+    ) -> PyResult<()> {
+        let hand = self.bench.task().hand;
+        match configurations.position(|q| !fits(hand, &q.0)) {
+            Some(odd) => {
+                let (key, range) =
+                    (format!("{key}[{odd}]"), "configurations of this hand that hold the object");
+                Err(errors::argument(py, &key, "one of another hand", range))
+            }
+            None => Ok(()),
+        }
     }
 }
 
@@ -178,16 +200,7 @@ impl Bench {
         configurations: Vec<Configuration>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let count = configurations.len();
-        let hand = self.bench.task().hand;
-        if let Some(odd) = configurations.iter().position(|q| !fits(hand, &q.0)) {
-            let range = "configurations of this hand that hold the object";
-            return Err(errors::argument(
-                py,
-                &format!("configurations[{odd}]"),
-                "one of another hand",
-                range,
-            ));
-        }
+        self.check(py, "configurations", configurations.iter())?;
         let flat = self.run(py, move |bench, watch| {
             let mut flat = Vec::with_capacity(2 * count);
             for Configuration(q) in &configurations {
@@ -199,7 +212,128 @@ impl Bench {
         })?;
         PyArray1::from_vec(py, flat).reshape([count, 2])
     }
+
+    /// What holds the object at rest in configurations, by forces that need at most `share` of the
+    /// friction: `forces` (n, fingers, 3) in O, `efforts` (n, joints), and (n,) `friction_share`,
+    /// `effort_share`, `mass`.
+    fn holds<'py>(
+        &self,
+        py: Python<'py>,
+        configurations: Vec<Configuration>,
+        share: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let count = configurations.len();
+        self.check(py, "configurations", configurations.iter())?;
+        let hand = self.bench.task().hand;
+        let fingers = hand.finger_count();
+        let joints: usize = (0..fingers as u8).map(|f| hand.finger(FingerIndex(f)).joints.len()).sum();
+        let found = self.run(py, move |bench, watch| {
+            let (mut asker, mut columns) = (Asker::new(bench.task()), Holding::default());
+            for Configuration(q) in &configurations {
+                proceed(watch)?;
+                asker.add(q, share, &mut columns)?;
+            }
+            Ok(columns)
+        })?;
+        let arrays = PyDict::new(py);
+        arrays.set_item("forces", PyArray1::from_vec(py, found.forces).reshape([count, fingers, 3])?)?;
+        arrays.set_item("efforts", PyArray1::from_vec(py, found.efforts).reshape([count, joints])?)?;
+        arrays.set_item("friction_share", PyArray1::from_vec(py, found.friction))?;
+        arrays.set_item("effort_share", PyArray1::from_vec(py, found.effort))?;
+        arrays.set_item("mass", PyArray1::from_vec(py, found.mass))?;
+        Ok(arrays)
+    }
+
+    /// The ways of the scenario's local planners, each with a random stream of its own.
+    fn connect(
+        &self,
+        py: Python<'_>,
+        starts: Vec<Configuration>,
+        ends: Vec<End>,
+        seed: u64,
+    ) -> PyResult<Vec<Way>> {
+        self.check(py, "starts", starts.iter())?;
+        self.check(py, "ends", ends.iter().filter_map(End::configuration))?;
+        let fingers = self.bench.task().hand.finger_count();
+        for end in &ends {
+            match end {
+                End::Regrasp(_, finger) if usize::from(*finger) >= fingers => {
+                    let range = format!("0..={}", fingers - 1);
+                    return Err(errors::argument(py, "finger", &finger.to_string(), &range));
+                }
+                End::Transfer(pose) => {
+                    to_pose(*pose)?;
+                }
+                _ => {}
+            }
+        }
+        self.run(py, move |bench, watch| {
+            let mut ways = Vec::with_capacity(starts.len());
+            for (number, (from, to)) in starts.iter().zip(&ends).enumerate() {
+                let mut context = Context::new(Random::from_key(seed, 2, number as u64, 0), watch);
+                context.proceed()?;
+                ways.push(to.connect(bench, from, &mut context)?);
+            }
+            Ok(ways)
+        })
+    }
 }
+
+/// Where a local planner is to go: the object to a pose, all fingers to another grasp, or one finger to
+/// where it is there.
+#[derive(FromPyObject)]
+pub enum End {
+    /// The finger moves alone.
+    Regrasp(Configuration, u8),
+    /// The contacts slide.
+    #[pyo3(transparent)]
+    Grasp(Configuration),
+    /// The object moves, X_HO.
+    #[pyo3(transparent)]
+    Transfer([[f64; 4]; 4]),
+}
+
+impl End {
+    /// The configuration, where there is one.
+    fn configuration(&self) -> Option<&Configuration> {
+        match self {
+            Self::Regrasp(q, _) | Self::Grasp(q) => Some(q),
+            Self::Transfer(_) => None,
+        }
+    }
+
+    /// The way of this slot's local planner from `from`.
+    fn connect(
+        &self,
+        bench: &Workbench,
+        from: &Configuration,
+        context: &mut Context<'_>,
+    ) -> Result<Way, CallError> {
+        let (task, plugins, mut path) = (bench.task(), bench.plugins(), Path::default());
+        let way = match self {
+            Self::Regrasp(q, finger) => {
+                let finger = FingerIndex(*finger);
+                let contact = q.0.contacts[finger].as_ref();
+                let to = api::Target::Regrasp { finger, contact, joints: &q.0.joints[finger] };
+                plugins.regrasp.connect(&task, &from.0, &to, Some(&mut path), context)
+            }
+            Self::Grasp(q) => {
+                plugins.grasp.connect(&task, &from.0, &api::Target::Grasp(&q.0), Some(&mut path), context)
+            }
+            Self::Transfer(pose) => {
+                // It was checked.
+                let X_HO = to_pose(*pose).unwrap_or(from.0.X_HO);
+                let to = api::Target::Transfer(&X_HO);
+                plugins.transfer.connect(&task, &from.0, &to, Some(&mut path), context)
+            }
+        }?;
+        let states = path.states.into_iter().map(Configuration).collect();
+        Ok((states, way.fraction, way.stop.map(api::Reason::name)))
+    }
+}
+
+/// States, the fraction made, and why it is not all.
+type Way = (Vec<Configuration>, f64, Option<&'static str>);
 
 fn proceed(watch: &Watch) -> Result<(), CallError> {
     if watch.interrupted() { Err(CallError::Interrupted) } else { Ok(()) }

@@ -6,11 +6,11 @@ use crate::scenario::{Scenario, registry};
 use crate::watch::{Watch, beside};
 use pyo3::prelude::*;
 use regrasp::api::Interrupt;
-use regrasp::host::{HostError, slot_by_name};
+use regrasp::host::{HostError, preset, slot_by_name};
 use regrasp::run::scenario;
 use regrasp::study::compare::{
-    self, Change, StudyWish, Execution, Folder, Machine, RunRecord, Seeds, Shard, StudyError, StudyProgress,
-    fingerprint,
+    self, Change, Execution, Folder, Machine, PRESET, RunRecord, Seeds, Shard, StudyError, StudyProgress,
+    StudyWish, fingerprint,
 };
 use serde_json::{Map, json};
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// One level of a factor: slot, plugin, and settings as JSON.
+/// One level of a factor: slot, plugin, and settings as JSON; or `preset` and its name.
 type Level = (String, Option<String>, Vec<(String, String)>);
 
 /// What is to be compared, and where.
@@ -42,6 +42,9 @@ pub struct Request {
 impl Request {
     fn levels(&self) -> Result<Vec<Vec<compare::Level>>, HostError> {
         let level = |(slot, id, settings): &Level| {
+            if slot == PRESET {
+                return preset(id.as_deref().unwrap_or_default()).map(compare::Level::Preset);
+            }
             let value = |text: &String| serde_json::from_str(text).unwrap_or_default();
             let settings: Map<_, _> = settings.iter().map(|(key, text)| (key.clone(), value(text))).collect();
             Ok(compare::Level::Change(Change { slot: slot_by_name(slot)?, id: id.clone(), settings }))

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use regrasp::api::{FingerIndex, FingerJoints, Hand as _, Vec3};
 use regrasp::run::scenario::load_hand;
-use regrasp::world::ChainHand;
+use regrasp::world::{ChainHand, Columns};
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -108,10 +108,13 @@ impl Hand {
         let joints = joints.as_slice()?;
         let mut centers = vec![0.0; 3 * count];
         in_parts(py, count, POSTURES, |rows| {
-            for row in rows {
-                let posture = FingerJoints::from_slice(&joints[row * columns..][..columns]);
-                centers[3 * row..][..3].copy_from_slice(self.hand.tip_center(finger, &posture).as_slice());
-            }
+            let joints = Columns {
+                numbers: &joints[columns * rows.start..][..columns * rows.len()],
+                width: columns,
+                first: 0,
+            };
+            let numbers = &mut centers[3 * rows.start..][..3 * rows.len()];
+            self.hand.tip_centers(finger, &joints, &mut Columns { numbers, width: 3, first: 0 });
         })?;
         PyArray1::from_vec(py, centers).reshape([count, 3])
     }
@@ -133,16 +136,14 @@ impl Hand {
         let joints = joints.as_slice()?;
         let mut centers = vec![0.0; 3 * fingers * count];
         in_parts(py, count, POSTURES, |rows| {
-            let mut left = &joints[rows.start * columns..];
+            let numbers = &joints[columns * rows.start..][..columns * rows.len()];
             let tips = &mut centers[3 * fingers * rows.start..][..3 * fingers * rows.len()];
-            for hand in tips.chunks_exact_mut(3 * fingers) {
-                for (finger, (center, &size)) in hand.chunks_exact_mut(3).zip(&sizes).enumerate() {
-                    let own;
-                    (own, left) = left.split_at(size);
-                    let posture = FingerJoints::from_slice(own);
-                    let p_HF = self.hand.tip_center(FingerIndex(finger as u8), &posture);
-                    center.copy_from_slice(p_HF.as_slice());
-                }
+            let mut first = 0;
+            for (finger, size) in sizes.iter().enumerate() {
+                let joints = Columns { numbers, width: columns, first };
+                let mut own = Columns { numbers: &mut *tips, width: 3 * fingers, first: 3 * finger };
+                self.hand.tip_centers(FingerIndex(finger as u8), &joints, &mut own);
+                first += size;
             }
         })?;
         PyArray1::from_vec(py, centers).reshape([count, fingers, 3])
@@ -161,15 +162,11 @@ impl Hand {
         let joints = joints.as_slice()?;
         let mut flat = vec![0.0; count * 3 * columns];
         in_parts(py, count, POSTURES, |rows| {
-            for row in rows {
-                let posture = FingerJoints::from_slice(&joints[row * columns..][..columns]);
-                let J = self.hand.tip_kinematics(finger, &posture).J_v;
-                for (axis, line) in
-                    flat[3 * columns * row..][..3 * columns].chunks_exact_mut(columns).enumerate()
-                {
-                    line.iter_mut().enumerate().for_each(|(joint, entry)| *entry = J[(axis, joint)]);
-                }
-            }
+            let numbers = &joints[columns * rows.start..][..columns * rows.len()];
+            let width = 3 * columns;
+            let jacobians = &mut flat[width * rows.start..][..width * rows.len()];
+            let joints = Columns { numbers, width: columns, first: 0 };
+            self.hand.tip_jacobians(finger, &joints, &mut Columns { numbers: jacobians, width, first: 0 });
         })?;
         PyArray1::from_vec(py, flat).reshape([count, 3, columns])
     }

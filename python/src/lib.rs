@@ -11,6 +11,7 @@ mod conformance;
 mod errors;
 mod grasps;
 mod hand;
+mod holding;
 mod pieces;
 mod plan;
 mod roles;

@@ -6,13 +6,14 @@ use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyRe
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use regrasp::api::{
-    CallError, Certificate, Cone, Context, FingerIndex, Grasp, GraspContact, Hint, MAX_FINGERS,
-    StabilityTest, Vec3,
+    CallError, Cone, Context, FingerIndex, Grasp, GraspContact, Hint, MAX_FINGERS, StabilityTest, Vec3,
 };
 use regrasp::plugins::stability_tests::{ForceClosure, ForceClosureSettings};
 
 /// Margins take a millisecond each: so many of them between two looks for signals.
 const MARGINS: usize = 16;
+/// Verdicts and their proofs take microseconds.
+const PROOFS: usize = 8192;
 
 /// Many grasps of equally many contacts, in arrays without gaps.
 struct Grasps<'a> {
@@ -41,26 +42,23 @@ impl Grasps<'_> {
         grasp
     }
 
-    /// The answers of all grasps in turn; of `part` of them between two looks for signals.
-    fn all<T: Send>(
+    /// Calls `each` with the number of every grasp in turn; with `part` of them between two looks for
+    /// signals.
+    fn each(
         &self,
         py: Python<'_>,
         part: usize,
-        each: impl Fn(&ForceClosure, &Grasp<'_>, &mut Context<'_>) -> Result<T, CallError> + Sync,
-    ) -> PyResult<Vec<T>> {
+        mut each: impl FnMut(usize, &ForceClosure, &Grasp<'_>, &mut Context<'_>) -> Result<(), CallError> + Send,
+    ) -> PyResult<()> {
         let fault = |error: &dyn std::fmt::Display| PyRuntimeError::new_err(error.to_string());
         let test = ForceClosure::new(ForceClosureSettings::default()).map_err(|error| fault(&error))?;
-        let (mut answers, mut failed) = (Vec::with_capacity(self.count), None);
-        in_parts(py, self.count, part, |rows| {
+        let mut done = Ok(());
+        in_parts(py, self.count, part, |mut rows| {
             let mut context = Context::seeded(0);
-            for index in rows {
-                match each(&test, &self.grasp(index), &mut context) {
-                    Ok(answer) => answers.push(answer),
-                    Err(error) => failed = Some(error),
-                }
-            }
+            let answers = rows.try_for_each(|index| each(index, &test, &self.grasp(index), &mut context));
+            done = std::mem::replace(&mut done, Ok(())).and(answers);
         })?;
-        failed.map_or(Ok(answers), |error| Err(fault(&error)))
+        done.map_err(|error| fault(&error))
     }
 }
 
@@ -97,8 +95,10 @@ pub fn force_closure<'py>(
     cones: PyReadonlyArray3<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<bool>>> {
     let grasps = grasps(py, &points, &normals, &cones)?;
-    let verdicts = grasps.all(py, 8192, |test, grasp, context| {
-        Ok(test.test(grasp, &mut Hint::default(), context)?.is_stable())
+    let mut verdicts = Vec::with_capacity(grasps.count);
+    grasps.each(py, PROOFS, |_, test, grasp, context| {
+        verdicts.push(test.test(grasp, &mut Hint::default(), context)?.is_stable());
+        Ok(())
     })?;
     Ok(PyArray1::from_vec(py, verdicts))
 }
@@ -115,11 +115,13 @@ pub fn closure_margins<'py>(
     length: Option<f64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let grasps = grasps(py, &points, &normals, &cones)?;
-    let margins = grasps.all(py, MARGINS, |test, grasp, context| {
+    let mut margins = Vec::with_capacity(2 * grasps.count);
+    grasps.each(py, MARGINS, |_, test, grasp, context| {
         let assessed = test.assess(grasp, length, center.map(Vec3::from), context)?;
-        Ok([assessed.margin_lower, assessed.margin_upper])
+        margins.extend([assessed.margin_lower, assessed.margin_upper]);
+        Ok(())
     })?;
-    PyArray1::from_vec(py, margins.concat()).reshape([grasps.count, 2])
+    PyArray1::from_vec(py, margins).reshape([grasps.count, 2])
 }
 
 /// A force for each contact (n, k, 3), in O on the object, balanced and strictly inside the cones; NaN where
@@ -132,16 +134,16 @@ pub fn internal_forces<'py>(
     cones: PyReadonlyArray3<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
     let grasps = grasps(py, &points, &normals, &cones)?;
-    let size = grasps.size;
-    let forces = grasps.all(py, MARGINS, |test, grasp, context| {
-        Ok(match test.assess(grasp, None, None, context)?.certificate {
-            Certificate::InternalForce { forces_O, .. } => {
-                forces_O.iter().flat_map(|force| force.iter().copied()).collect()
-            }
-            _ => vec![f64::NAN; 3 * size],
-        })
+    let mut flat = vec![f64::NAN; 3 * grasps.size * grasps.count];
+    let mut forces = Vec::with_capacity(grasps.size);
+    grasps.each(py, PROOFS, |index, test, grasp, _| {
+        if test.internal_forces(grasp, &mut forces)? {
+            let own = flat[3 * grasps.size * index..].iter_mut();
+            own.zip(forces.iter().flatten()).for_each(|(number, part)| *number = *part);
+        }
+        Ok(())
     })?;
-    PyArray1::from_vec(py, forces.concat()).reshape([grasps.count, size, 3])
+    PyArray1::from_vec(py, flat).reshape([grasps.count, grasps.size, 3])
 }
 
 /// Refuses arrays that are not (n, 3), and gives their numbers.

@@ -6,7 +6,7 @@ use crate::scenario::{Scenario, registry};
 use crate::watch::{Watch, beside};
 use crate::{answer, errors};
 use pyo3::prelude::*;
-use regrasp::host::{Choices, HostError, slot_by_name};
+use regrasp::host::{Choices, HostError, preset, slot_by_name};
 use regrasp::run::{Run, RunError, RunOptions, Setup, scenario};
 use std::sync::Arc;
 
@@ -25,6 +25,8 @@ pub struct Solved {
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Changes {
+    /// A preset's name; it comes first.
+    preset: Option<String>,
     /// Slot and plugin.
     uses: Vec<(String, String)>,
     /// Slot, key and value as JSON.
@@ -41,7 +43,7 @@ impl Changes {
         let budget = &scenario.problem.limits.budget;
         let same_budget = self.max_nodes.is_none_or(|nodes| nodes == budget.max_nodes)
             && self.time_limit.is_none_or(|limit| Some(limit) == budget.time_limit);
-        if same_budget && self.uses.is_empty() && self.settings.is_empty() {
+        if same_budget && self.preset.is_none() && self.uses.is_empty() && self.settings.is_empty() {
             return Ok(Arc::clone(scenario));
         }
         let mut changed = scenario::Scenario::clone(scenario);
@@ -53,6 +55,9 @@ impl Changes {
     }
 
     fn choose(&self, choices: &mut Choices) -> Result<(), HostError> {
+        if let Some(name) = &self.preset {
+            preset(name)?.apply(choices);
+        }
         for (slot, id) in &self.uses {
             choices.use_plugin(slot_by_name(slot)?, id);
         }

@@ -39,7 +39,12 @@ impl Scenario {
         parsed.map(|parsed| Self(Arc::new(parsed))).map_err(|error| errors::scenario(py, &error))
     }
 
-    /// Name, summary, source, remarks, the resolved problem and the plugins, as JSON.
+    /// What was chosen because neither the scenario nor its files say it.
+    fn remarks(&self) -> Vec<String> {
+        self.0.remarks.clone()
+    }
+
+    /// Name, summary, source, the resolved problem and the plugins, as JSON.
     fn describe(&self) -> String {
         let scenario = &self.0;
         let plugins = scenario.choices.iter().map(|(slot, choice)| (slot.name().to_owned(), json!(choice)));
@@ -47,7 +52,6 @@ impl Scenario {
             "name": scenario.name,
             "summary": scenario.summary,
             "source": scenario.source,
-            "remarks": scenario.remarks,
             "problem": scenario.problem,
             "plugins": Value::Object(plugins.collect::<Map<_, _>>()),
         })

@@ -54,6 +54,15 @@ def test_classes_and_settings_are_compared() -> None:
     assert len(settings.runs) == 4
 
 
+def test_presets_are_compared() -> None:
+    study = rg.compare("sphere", {"preset": ["paper", "default"]}, seeds=2, time_limit=20)
+    assert len(study.runs) == 4 and "paper" in study.summary
+    with pytest.raises(rg.RegraspError, match="did you mean `paper`"):
+        rg.compare("sphere", {"preset": ["papre"]}, seeds=1)
+    with pytest.raises(TypeError, match="preset"):
+        rg.compare("sphere", {"preset": [3]}, seeds=1)
+
+
 def test_what_cannot_be_compared_is_refused() -> None:
     with pytest.raises(rg.RegraspError, match="did you mean"):
         rg.compare("sphere", {"stability-test": ["scop"]}, seeds=1)

@@ -140,3 +140,50 @@ def test_unknown_hands_and_files_are_scenario_errors(tmp_path) -> None:
         rg.Hand.built_in("for-finger")
     with pytest.raises(rg.ScenarioError):
         rg.Hand.from_file(tmp_path / "none.urdf")
+
+
+def test_what_holds_the_object_is_balanced_within_friction_and_efforts() -> None:
+    bench = rg.Bench("sphere")
+    grasps = bench.sample_grasps(8, seed=3)
+    held = bench.holds(grasps)
+    problem = bench.scenario.problem
+    mass, friction = problem["object"]["mass"], problem["object"]["friction"]
+    limits = np.concatenate([finger.effort for finger in rg.Hand.built_in("four-finger").fingers])
+    for row, q in enumerate(grasps):
+        R = np.asarray(q.pose)[:3, :3]
+        points = np.array([contact.point for contact in q.contacts])
+        normals = np.array([contact.normal for contact in q.contacts])
+        f = held.forces[row]
+        weight = R.T @ [0, 0, -9.81 * mass]
+        assert np.abs(f.sum(axis=0) + weight).max() < 1e-6
+        assert np.abs(np.cross(points, f).sum(axis=0)).max() < 1e-7
+        pressed = -(f * normals).sum(axis=1)
+        sideways = np.linalg.norm(f + pressed[:, None] * normals, axis=1)
+        assert (sideways <= (1 + 1e-6) * held.friction_share[row] * friction * pressed).all()
+        assert (np.abs(held.efforts[row]) <= (1 + 1e-6) * held.effort_share[row] * limits).all()
+    assert (held.mass > mass).all() and (held.friction_share <= 1).all()
+    # With as little of the friction as can be there are forces still, and they rely on less.
+    assert (bench.holds(grasps, share=0.01).friction_share < held.friction_share).all()
+    with pytest.raises(rg.ArgumentError, match="`share`"):
+        bench.holds(grasps, share=0)
+
+
+def test_local_planners_go_from_grasp_to_grasp() -> None:
+    bench = rg.Bench("sphere")
+    start = bench.sample_grasps(1, seed=3)[0]
+    turned = np.asarray(start.pose) @ rg.pose(axis="z", angle_deg=5)
+    way = bench.connect(start, turned)
+    assert isinstance(way, rg.Way) and way and way.fraction == 1 and len(way.states) > 2
+    assert np.allclose(way.states[0].pose, start.pose) and np.allclose(way.states[-1].pose, turned)
+    # Balls roll: a contact moves on the object and on the fingertip alike, and stays in touch.
+    assert [c is None for c in way.states[-1].contacts] == [c is None for c in start.contacts]
+    far = bench.connect(start, np.asarray(start.pose) @ rg.pose(axis="z", angle_deg=170))
+    assert isinstance(far, rg.Way) and not far and far.reason and far.fraction < 1
+    ways = bench.connect([start] * 3, [turned] * 3, seed=1)
+    assert isinstance(ways, list) and all(len(own.states) == len(way.states) for own in ways)
+    lifted = bench.connect(start, way.states[-1], finger=1)
+    assert isinstance(lifted, rg.Way)
+    with pytest.raises(rg.ArgumentError, match="entries"):
+        bench.connect([start, start], [turned] * 3)
+    with pytest.raises((rg.RegraspError, ValueError)):
+        bench.connect(start, 2 * np.eye(4))

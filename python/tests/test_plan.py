@@ -240,3 +240,13 @@ def test_a_plan_is_exported(tmp_path) -> None:
     assert files and all(file.stat().st_size > 0 for file in files)
     with pytest.raises(rg.ArgumentError, match="urdf"):
         plan.export("stl", tmp_path)
+
+
+def test_a_preset_is_taken_before_what_is_chosen() -> None:
+    chosen = rg.plan("sphere", seed=1, preset="paper", use={"sampler": "projection"}, time_limit=60)
+    plugins = chosen.scenario["plugins"]
+    assert plugins["surface"]["id"].endswith("steiner") and plugins["sampler"]["id"].endswith("projection")
+    with pytest.raises(rg.PluginError, match="did you mean `paper`"):
+        rg.plan("sphere", preset="papre")
+    with pytest.raises(TypeError, match="preset"):
+        rg.plan("sphere", preset=3)  # type: ignore[arg-type]

@@ -34,6 +34,11 @@ impl Workbench {
         self.plugins.sampler.as_ref()
     }
 
+    /// The plugin in each slot.
+    pub fn plugins(&self) -> &PluginSet {
+        &self.plugins
+    }
+
     /// What the stability test says of the grasp at `q`; see [`Setup::margin`].
     pub fn assess(&self, q: &Configuration) -> Result<Assessment, CallError> {
         assess(&self.task(), q)

@@ -13,7 +13,8 @@ use std::sync::atomic::{AtomicU8, Ordering};
 const ROUNDING: f64 = 1e-13;
 /// How many facets are looked at, one beside the other.
 const STEPS: usize = 64;
-/// With more facets than this a tree finds the closest one sooner than going through all.
+/// With more facets than this a tree finds the closest one sooner than going through all, or through all
+/// vertices to see whether a facet bounds the mesh.
 const MOST_FACING: usize = 4000;
 /// A point no higher above a facet (m) may be inside.
 const ABOVE: f64 = 1e-9;
@@ -112,6 +113,9 @@ impl Outer {
     /// The closest point to `p` of a mesh with these vertices, and its facet, where `p` is outside and it is
     /// on the facet `near` or beside it, and such that no search is needed.
     pub(crate) fn closest(&self, vertices: &[Vec3], p: &Vec3, near: u32) -> Option<(Vec3, u32)> {
+        if self.facets.len() > MOST_FACING {
+            return None;
+        }
         let mut f = near;
         for _ in 0..STEPS {
             let facet = self.facets.get(f as usize)?;

@@ -36,20 +36,24 @@ pub fn coarse_hull(points: &[Vec3], tolerance: f64) -> Option<(Mesh, f64)> {
         return Some((whole, 0.0));
     }
     let mut chosen: Vec<Vec3> = extremes(all, 1);
+    let mut left = all.to_vec();
     loop {
         let coarse = convex_hull(&chosen)?;
         let planes = planes(&coarse);
-        let mut out: Vec<(f64, Vec3)> = all.iter().map(|p| (beyond(&planes, p), *p)).collect();
-        out.sort_by(|a, b| b.0.total_cmp(&a.0));
         let allowed = tolerance - GRID;
-        if out[0].0 <= allowed || chosen.len() >= MANY {
+        let depths = left.iter().map(|p| (beyond(&planes, p), *p));
+        let mut out: Vec<(f64, Vec3)> = depths.filter(|(depth, _)| *depth > allowed).collect();
+        // The hull grows: what is within it stays there, and need not be looked at again.
+        left = out.iter().map(|(_, p)| *p).collect();
+        out.sort_by(|a, b| b.0.total_cmp(&a.0));
+        if out.is_empty() || chosen.len() >= MANY {
             // Of the points as they were given, not as they were rounded.
             let worst = points.iter().map(|p| beyond(&planes, p)).fold(0.0, f64::max);
             return Some((coarse, worst));
         }
         // A few at a time, no two of them close together: one corner takes care of what lies about it.
         let mut added: Vec<Vec3> = Vec::new();
-        for (depth, p) in out.into_iter().take_while(|(depth, _)| *depth > allowed) {
+        for (depth, p) in out {
             let apart = 8.0 * depth.max(tolerance);
             if added.iter().all(|other| (other - p).norm() > apart) {
                 added.push(p);

@@ -18,7 +18,7 @@ pub use bodies::{BodyFault, RigidBody, body_count, outward_bodies, rigid_body};
 pub use clearance::SceneClearance;
 pub use error::WorldError;
 pub use facets::shape_mesh;
-pub use hand::{ChainHand, HandError, LinkFrame, LinkFrames};
+pub use hand::{ChainHand, Columns, HandError, LinkFrame, LinkFrames};
 pub use hull::{coarse_hull, convex_hull, convex_pieces};
 pub use object::{Measures, load_object, measure, object_of_mesh, primitive_mesh, signed_distances};
 pub use remake::{Remade, remake};

@@ -92,13 +92,36 @@ impl ForceClosure {
 
     /// The same for contacts that were gathered already.
     pub(crate) fn decide(&self, grasp: &ScaledGrasp, hint: &mut Hint) -> Stability {
-        if grasp.contacts().iter().all(|contact| !contact.grained)
-            && let Ok(contacts) = grasp.contacts().try_into()
-            && let Some(closed) = three_points(contacts)
-        {
-            return if closed { Stability::Stable } else { Stability::Unstable };
+        match in_closed_form(grasp) {
+            Some(closed) => {
+                if closed {
+                    Stability::Stable
+                } else {
+                    Stability::Unstable
+                }
+            }
+            None => self.search(grasp, hint),
         }
-        self.search(grasp, hint)
+    }
+
+    /// Forces on the object (N, in O) at the contacts of `grasp`, in turn, that balance each other strictly
+    /// inside every cone, the normal forces adding up to 1 N; `false`, and none, where the grasp is not
+    /// closed.
+    ///
+    /// The proof alone, about as fast as the verdict: [`StabilityTest::assess`] measures the margin too.
+    /// Cones must be elliptic.
+    pub fn internal_forces(&self, grasp: &Grasp<'_>, forces_O: &mut Vec<Vec3>) -> Result<bool, CallError> {
+        forces_O.clear();
+        let scaled = ScaledGrasp::gather(grasp, None, ID)?;
+        if scaled.components() <= 6 || in_closed_form(&scaled) == Some(false) {
+            return Ok(false);
+        }
+        let search = Search::new(&scaled, self.tau);
+        let Outcome::Closed(w) = search.run() else { return Ok(false) };
+        let forces = search.forces(&w);
+        let (each, scale) = (&forces.each[..scaled.contacts().len()], 1.0 / forces.normal_sum);
+        forces_O.extend(each.iter().map(|(f, _)| f * scale));
+        Ok(true)
     }
 
     fn search(&self, grasp: &ScaledGrasp, hint: &mut Hint) -> Stability {
@@ -167,6 +190,12 @@ impl StabilityTest for ForceClosure {
         context.count_call(Slot::StabilityTest);
         Ok(self.judge(grasp, Some(finger), &mut Hint::default(), ID)?.is_stable())
     }
+}
+
+/// Whether three point contacts are closed; `None` where the closed form does not tell.
+fn in_closed_form(grasp: &ScaledGrasp) -> Option<bool> {
+    let round = grasp.contacts().iter().all(|contact| !contact.grained);
+    round.then(|| grasp.contacts().try_into().ok().and_then(three_points)).flatten()
 }
 
 /// The verdict that the hint proves, if it proves one beyond doubt.

@@ -26,7 +26,9 @@ from ._grasps import Grasps, grasps
 from ._hand import Finger, Hand
 from ._pieces import (
     Bench,
+    Holding,
     SurfacePoints,
+    Way,
     closure_margin,
     force_closure,
     internal_forces,
@@ -79,6 +81,7 @@ __all__ = [
     "Grasps",
     "Hand",
     "Hold",
+    "Holding",
     "LocalPlanner",
     "Mesh",
     "NoPlan",
@@ -109,6 +112,7 @@ __all__ = [
     "Verdict",
     "VerificationError",
     "View",
+    "Way",
     "closure_margin",
     "compare",
     "conformance",

@@ -60,7 +60,12 @@ def plan(given: argparse.Namespace) -> None:
     settings = {key: value(text) for key, text in pairs(given.set).items()}
     options = {"seed": given.seed, "threads": given.threads, "time_limit": given.time_limit}
     made = rg.plan(
-        given.scenario, use=pairs(given.use), settings=settings, max_nodes=given.max_nodes, **options
+        given.scenario,
+        use=pairs(given.use),
+        settings=settings,
+        preset=given.preset,
+        max_nodes=given.max_nodes,
+        **options,
     )
     print(made)
     if given.output:
@@ -142,6 +147,7 @@ def parser() -> argparse.ArgumentParser:
         form.add_argument("-o", "--output", metavar="PLACE")
         if command == "plan":
             form.add_argument("--seed", type=int, default=0, metavar="N")
+            form.add_argument("--preset", metavar="NAME")
             form.add_argument("--use", action="append", default=[], metavar="SLOT=ID")
             form.add_argument("--set", action="append", default=[], metavar="SLOT.KEY=VALUE")
             form.add_argument("--max-nodes", type=int, metavar="N")

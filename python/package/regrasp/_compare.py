@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _regrasp
 from ._errors import ArgumentError, StudyError
-from ._planning import MOST, Callback, Teller, seconds, setting_text, slot_and_key, whole
+from ._planning import MOST, Callback, Teller, preset_name, seconds, setting_text, slot_and_key, whole
 from ._plot import study_figure
 from ._roles import chosen
 from ._scenario import Scenario
@@ -81,11 +81,9 @@ def compare(
     scenarios : scenario or sequence of scenarios
         Each as for :func:`regrasp.plan`.
     vary : dict
-        Slots and what to fill them with, ``{"sampler": ["rlg", "projection"]}``, or settings and their
-        values,
-        ``{"graph-strategy.end": [0.3, 0.8]}``; plugins may be classes. All combinations are made, the first
-        of all is
-        the baseline.
+        Slots and what to fill them with, ``{"sampler": ["rlg", "projection"]}``, settings and their values,
+        ``{"graph-strategy.end": [0.3, 0.8]}``, or presets, ``{"preset": ["paper", "default"]}``; plugins may
+        be classes. All combinations are made, the first of all is the baseline.
     seeds, first_seed : int
         How many seeds, and the first of them.
     output : path, optional
@@ -160,6 +158,8 @@ def _levels(path: str, values: Any) -> list[Any]:
 
 
 def _level(path: str, value: Any) -> Level:
+    if path == "preset":
+        return path, preset_name(value), []
     if "." not in path.removeprefix("local-planner."):
         plugin, settings = chosen(path, value)
         return path, plugin, [

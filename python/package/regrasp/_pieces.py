@@ -161,8 +161,60 @@ class SurfacePoints:
         return len(self.facets)
 
 
+@dataclass(frozen=True)
+class Holding:
+    """What holds the object at rest in N grasps: F fingers, J joints; NaN where no forces do.
+
+    Attributes
+    ----------
+    forces : ndarray, (N, F, 3)
+        Of the fingertips on the object, in O (N): NaN where a finger does not hold.
+    efforts : ndarray, (N, J)
+        What the joints give for them, Jᵀf, weights of links apart (N·m; N).
+    friction_share : ndarray, (N,)
+        The largest share of the friction that a force relies on. Above 1 no forces within friction and
+        efforts hold the weight, and these are the nearest.
+    effort_share : ndarray, (N,)
+        The largest share of its effort limit that a joint gives.
+    mass : ndarray, (N,)
+        The largest mass (kg), to a hundredth, that the grasp carries within friction and efforts; 0 for none.
+    """
+
+    forces: Array
+    efforts: Array
+    friction_share: Array
+    effort_share: Array
+    mass: Array
+
+    def __len__(self) -> int:
+        return len(self.mass)
+
+
+@dataclass(frozen=True)
+class Way:
+    """How far a local planner came; true where it reached its end.
+
+    Attributes
+    ----------
+    states : list of Configuration
+        The start, and what was reached from there in turn.
+    fraction : float
+        The share of the way that was made, 0 to 1.
+    reason : str or None
+        Why it stopped short.
+    """
+
+    states: list[Configuration]
+    fraction: float
+    reason: str | None
+
+    def __bool__(self) -> bool:
+        return self.reason is None
+
+
 class Bench:
-    """A scenario with its plugins built, for calls by hand: its surface, its sampler, its stability test.
+    """A scenario with its plugins built, for calls by hand: its surface, its sampler, its stability test, its
+    local planners.
 
     Parameters
     ----------
@@ -221,6 +273,66 @@ class Bench:
         centre of mass.
         """
         return self._native.margins(list(configurations))
+
+    def holds(self, configurations: Sequence[Configuration], *, share: float = 1.0) -> Holding:
+        """What holds the object's weight at rest in configurations, and how much they would carry.
+
+        Forces are the analytic centre of those within the joints' efforts that need at most `share` (0.01
+        to 1) of the friction; where there are none, those that need least of it. Source: Han, Trinkle, Li,
+        "Grasp analysis as linear matrix inequality problems", T-RA 2000. Contacts must share one elliptic
+        cone.
+        """
+        part = float(numbers_of("share", share))
+        if not 0.01 <= part <= 1:
+            message = f"`share` = {part} is outside 0.01..=1"
+            raise ArgumentError(message, key="share", value=str(part), range="0.01..=1")
+        return Holding(**self._native.holds(list(configurations), part))
+
+    def connect(
+        self,
+        starts: Configuration | Sequence[Configuration],
+        ends: Any,
+        *,
+        finger: int | None = None,
+        seed: int = 0,
+    ) -> Way | list[Way]:
+        """Goes from configurations to others by the scenario's local planners.
+
+        Parameters
+        ----------
+        starts : Configuration, or sequence of N
+            Where to begin.
+        ends : Configuration, array_like (4, 4), or sequence of N
+            A configuration of the same fingers is reached within GS_n, its contacts sliding; or, with
+            `finger`, by that finger alone. A pose X_HO is where the object goes, the fingertips rolling.
+        finger : int, optional
+            The finger that regrasps.
+        seed : int
+            Of all random choices.
+
+        Returns
+        -------
+        Way, or list of N
+            Planners of poses may stop on the way; the others arrive, or stay.
+        """
+        alone = isinstance(starts, Configuration)
+        begin = [starts] if isinstance(starts, Configuration) else list(starts)
+        single = isinstance(ends, Configuration) or np.shape(ends) == (4, 4)
+        targets = [ends] * len(begin) if single else list(ends)
+        if len(targets) != len(begin):
+            message = f"`ends` has {len(targets)} entries, `starts` {len(begin)}"
+            raise ArgumentError(message, key="ends", value=str(len(targets)), range=str(len(begin)))
+        to = [_end(f"ends[{i}]", target, finger) for i, target in enumerate(targets)]
+        ways = [Way(*way) for way in self._native.connect(begin, to, seed_of(seed))]
+        return ways[0] if alone else ways
+
+
+def _end(key: str, target: Any, finger: int | None) -> Any:
+    if isinstance(target, Configuration):
+        return target if finger is None else (target, whole("finger", finger, 0, 255))
+    if finger is not None:
+        raise ArgumentError("with `finger` the ends are configurations", key="ends", value=repr(target))
+    return array(key, target, (4, 4)).tolist()
 
 
 def _sides(contacts: SurfacePoints) -> tuple[Array, Array]:

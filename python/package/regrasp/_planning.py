@@ -58,6 +58,7 @@ def plan(
     max_nodes: int | None = None,
     use: Mapping[str, Any] | None = None,
     settings: Mapping[str, Any] | None = None,
+    preset: str | None = None,
     progress: bool | Callback = False,
 ) -> Plan:
     """Plans, and verifies the plan.
@@ -83,6 +84,8 @@ def plan(
         instance of one with its settings.
     settings : dict, optional
         Settings of the plugins, such as ``{"sampler.poses": 200}``.
+    preset : str, optional
+        A set of plugins and settings by name, such as ``"paper"``; `use` and `settings` come after it.
     progress : bool or callable, optional
         True shows a bar (by ``tqdm`` where it is installed). A callable is handed a :class:`Progress`, on
         this thread.
@@ -109,7 +112,7 @@ def plan(
     checked = Scenario.of(scenario)
     for remark in checked.remarks:
         logger.info("%s", remark)
-    changes = native_changes(use, settings, time_limit, max_nodes)
+    changes = native_changes(use, settings, time_limit, max_nodes, preset)
     with Teller(progress) as tell:
         solved = _regrasp.solve(
             checked.native, seed_of(seed), whole("threads", threads, 1, 256), changes, tell
@@ -156,6 +159,7 @@ def native_changes(
     settings: Mapping[str, Any] | None,
     time_limit: float | None,
     max_nodes: int | None,
+    preset: str | None = None,
 ) -> dict[str, Any]:
     """What a caller changes in a scenario, as the native module takes it."""
     chosen_ids = {slot: chosen(slot, plugin) for slot, plugin in _tree("use", use).items()}
@@ -168,11 +172,19 @@ def native_changes(
         (*slot_and_key(key), setting_text(key, value)) for key, value in _tree("settings", settings).items()
     ]
     return {
+        "preset": None if preset is None else preset_name(preset),
         "uses": [(slot, plugin) for slot, (plugin, _) in chosen_ids.items()],
         "settings": own + split,
         "time_limit": seconds("time_limit", time_limit),
         "max_nodes": None if max_nodes is None else whole("max_nodes", max_nodes, 1, MOST),
     }
+
+
+def preset_name(value: Any) -> str:
+    """The name of a preset."""
+    if not isinstance(value, str):
+        raise TypeError(f"a preset is a name such as 'paper', not {value!r}")
+    return value
 
 
 def _tree(key: str, given: Mapping[str, Any] | None) -> Mapping[str, Any]:

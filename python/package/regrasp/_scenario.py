@@ -192,7 +192,7 @@ class Scenario:
     @property
     def remarks(self) -> list[str]:
         """What was chosen because neither the scenario nor its files say it."""
-        return list(self._described["remarks"])
+        return self.native.remarks()
 
     @property
     def problem(self) -> dict[str, Any]:

@@ -19,7 +19,7 @@ mod stash;
 mod surface;
 mod task;
 
-pub use convert::fits;
+pub use convert::{fits, to_pose};
 pub use data::{Configuration, Contact, Context, Grasp};
 pub use graph_strategy::Graph;
 pub use local_planner::Target;

@@ -9,6 +9,7 @@
 //! | question | file |
 //! |---|---|
 //! | Where is the tip, where are the links, how do they move? | `chain.rs` (a joint's motion: `screw.rs`) |
+//! | ... for many postures at once? | `batch.rs`, vector arithmetic in `lanes.rs` |
 //! | Which joints put the tip there? | `inverse/mod.rs` |
 //! | ... for abduction and two flexions, in closed form | `inverse/parallel.rs` |
 //! | ... for any three joints, numerically | `inverse/numeric.rs` |
@@ -39,14 +40,17 @@
 //! of squared differences over the three joints; the numeric method takes the solution that continues from
 //! `near` if there is one.
 
+mod batch;
 mod chain;
 mod check;
 mod coupling;
 mod error;
 mod inverse;
+mod lanes;
 mod reach;
 mod screw;
 
+pub use batch::Columns;
 pub use chain::{LinkFrame, LinkFrames};
 pub use error::HandError;
 
@@ -128,6 +132,30 @@ impl ChainHand {
         room: &'a mut LinkFrames,
     ) -> &'a [LinkFrame] {
         self.fingers[finger.index()].chain.frames(joints, room)
+    }
+
+    /// The fingertip's centre in H (m), as [`Hand::tip_center`] has it, for each row of joint positions of
+    /// the finger, into three columns.
+    ///
+    /// Some 5 ns a joint.
+    pub fn tip_centers(
+        &self,
+        finger: FingerIndex,
+        joints: &Columns<&[f64]>,
+        centers: &mut Columns<&mut [f64]>,
+    ) {
+        self.fingers[finger.index()].chain.tip_centers(joints, centers);
+    }
+
+    /// The Jacobian J_v of [`Hand::tip_kinematics`] for each row of joint positions of the finger: its three
+    /// rows, each of a column a joint, one after the other.
+    pub fn tip_jacobians(
+        &self,
+        finger: FingerIndex,
+        joints: &Columns<&[f64]>,
+        jacobians: &mut Columns<&mut [f64]>,
+    ) {
+        self.fingers[finger.index()].chain.tip_jacobians(joints, jacobians);
     }
 
     /// The shapes of link `link` (0 = behind the first joint), in the link's frame; many links have none.

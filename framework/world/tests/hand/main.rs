@@ -2,6 +2,7 @@
 //! bad descriptions.
 
 mod bad;
+mod batch;
 mod driven;
 mod forward;
 mod hands;

@@ -3,7 +3,7 @@
 use crate::support;
 
 use proptest::prelude::*;
-use regrasp_api::{Hint, Random, Rotation, Stability, StabilityTest, Vec3};
+use regrasp_api::{Certificate, Hint, Random, Rotation, Stability, StabilityTest, Vec3};
 use support::{
     Family, Touch, assess, center_and_length, depth_along, force_closure, grasp_of, margins, moved,
     random_touches, scaled_friction, verdict, with_context,
@@ -122,6 +122,16 @@ proptest! {
                 touch.p += random.direction() * (size * length);
                 touch.n = (touch.n + random.direction() * size).normalize();
             }
+        }
+    }
+
+    #[test]
+    fn forces_by_themselves_are_those_of_the_certificate(touches in touches()) {
+        let mut forces = vec![Vec3::x()];
+        let closed = force_closure().internal_forces(&grasp_of(&touches), &mut forces).unwrap();
+        match assess(&force_closure(), &touches).certificate {
+            Certificate::InternalForce { forces_O, .. } => prop_assert_eq!((closed, forces), (true, forces_O)),
+            _ => prop_assert!(!closed && forces.is_empty()),
         }
     }
 
