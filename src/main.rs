@@ -16,6 +16,7 @@ mod hand;
 mod holds;
 mod inputs;
 mod man;
+mod memory;
 mod new;
 mod new_plugin;
 mod numbers;

@@ -32,6 +32,7 @@ fn with(clock: &(dyn Clock + Sync)) -> Execution<'_> {
     Execution {
         threads: 1,
         clock,
+        memory: None,
         cancel: &Uninterrupted,
         progress: &Silent,
         audit: false,
