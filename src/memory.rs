@@ -12,7 +12,7 @@ struct Bytes {
 }
 
 thread_local! {
-    // Made by the compiler and never dropped, so that the allocator may use it at any time of a thread's life.
+    // Made by the compiler and never dropped: the allocator may use it at any time of a thread's life.
     static BYTES: Cell<Bytes> = const { Cell::new(Bytes { in_use: 0, most: 0 }) };
 }
 
@@ -25,8 +25,8 @@ fn count(change: i64) {
 
 /// The system's allocator, counted for each thread.
 ///
-/// Every call is passed on as it is: what a library of plugins allocates, by the system's allocator itself, may
-/// be freed here and the other way round. What a library allocates is not counted.
+/// Every call is passed on as it is: what a library of plugins allocates, by the system's allocator itself,
+/// may be freed here and the other way round. What a library allocates is not counted.
 struct Counting;
 
 fn size(layout: Layout) -> i64 {

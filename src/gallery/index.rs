@@ -6,10 +6,11 @@ use super::figures::Figures;
 use std::fmt::Write;
 
 /// What stands above the plans.
-const ABOUT: &str = "A dark fingertip holds the object, a red one is on its way to a new contact; the cross painted on the object \
-shows how it turns. Every plan is verified. *Margin* and *clearance* are the least of the whole motion, as the \
-verifier certifies them. *Holds* says at which friction, which mass and which push from any side every grasp of \
-the motion still stands, within the efforts of the joints.";
+const ABOUT: &str = "\
+A dark fingertip holds the object, a red one is on its way to a new contact; the cross painted on the object \
+shows how it turns. Every plan is verified. *Margin* and *clearance* are the least of the whole motion, as \
+the verifier certifies them. *Holds* says at which friction, which mass and which push from any side every \
+grasp of the motion still stands, within the efforts of the joints.";
 
 /// The page for a forge and for the book.
 pub fn markdown(entries: &[Entry], args: &GalleryArgs) -> String {
@@ -19,8 +20,8 @@ pub fn markdown(entries: &[Entry], args: &GalleryArgs) -> String {
         let seed = if args.seed == 0 { String::new() } else { format!(" --seed {}", args.seed) };
         write!(
             text,
-            "\n## {name}\n\n{}.\n\n![{summary}, at four moments]({name}.svg)\n\n| {} |\n|{}\n| {} |\n\n```\n$ \
-             regrasp plan {asked}{seed} --view\n```\n",
+            "\n## {name}\n\n{}.\n\n![{summary}, at four moments]({name}.svg)\n\n\
+             | {} |\n|{}\n| {} |\n\n```\n$ regrasp plan {asked}{seed} --view\n```\n",
             capital(summary),
             Figures::HEAD.join(" | "),
             "---|".repeat(Figures::HEAD.len()),

@@ -37,7 +37,7 @@ fn hands_and_objects_of_the_gallery_differ() {
     let count = |column: usize| cells.iter().map(|row| row[column]).collect::<BTreeSet<_>>().len();
     assert_eq!(cells.len(), 12);
     assert!(count(1) >= 7, "{} hands", count(1));
-    assert!(count(2) >= 8, "{} objects", count(2));
+    assert!(count(2) >= 7, "{} objects", count(2));
 }
 
 #[test]

@@ -96,8 +96,8 @@ fn a_wrong_hand_comes_with_its_line_and_a_missing_key_with_an_example() {
     refused(&desk, "plan mine.toml --json", &wanted);
     let text = built_in("sphere", &[]);
     desk.write("mine.toml", &text[..text.find("[[goal]]").expect("it has a goal")]);
-    let remedy = "give `goal`, such as `[[goal]] pose = { position = [0.0, 0.0, 0.085], axis = [0.0, 0.0, 1.0], \
-                  angle_deg = 90.0 }`";
+    let remedy = "give `goal`, such as `[[goal]] pose = { position = [0.0, 0.0, 0.085], \
+                  axis = [0.0, 0.0, 1.0], angle_deg = 90.0 }`";
     refused(&desk, "plan mine.toml --json", &[("code", "missing-key".into()), ("remedy", remedy.into())]);
     desk.run("plan mine.toml")
         .assert_fails(2, &["`goal` is missing; for example", "[[goal]]", "--> mine.toml"]);

@@ -147,7 +147,7 @@ fn memory_is_measured_and_again_the_same_on_one_thread() {
     };
     let once = bytes("once");
     assert_eq!(once, bytes("again"));
-    // A plan of some hundred states with its contacts takes more than the first, and no plan of a ball the other.
+    // Hundreds of states with their contacts take more than the first, and no plan of a ball the other.
     assert!(once.iter().all(|bytes| (100_000..1_000_000_000).contains(bytes)), "{once:?}");
     assert!(desk.read("once/comparisons.csv").contains("memory_bytes"));
     assert!(

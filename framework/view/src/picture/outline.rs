@@ -4,11 +4,11 @@ use super::view::Point;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// The loops round facets that face the eye, as a path for the fill rule `nonzero`, to a tenth of a millimetre.
+/// The loops round facets that face the eye, as a path for the fill rule `nonzero`, to 0.1 mm.
 ///
-/// Each facet is a loop of its own, run through in one sense; where two share an edge they run through it both
-/// ways, and it drops out. So the winding numbers of what is left are those of the facets, also where these
-/// overlap.
+/// Each facet is a loop of its own, run through in one sense; where two share an edge they run through it
+/// both ways, and it drops out. So the winding numbers of what is left are those of the facets, also where
+/// these overlap.
 pub(super) fn outline(facets: impl Iterator<Item = [u32; 3]>, seen: &[Point]) -> String {
     let mut ways = ways(facets);
     let mut path = String::new();
