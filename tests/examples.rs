@@ -124,6 +124,16 @@ fn grasps_in_bulk() {
 }
 
 #[test]
+fn an_atlas() {
+    assert_says("14_an_atlas", &["free-fingertips  50 mm", "four-finger     500 mm    none: "]);
+}
+
+#[test]
+fn a_protocol() {
+    assert_says("15_a_protocol", &["of 23 orientations", "92 % (simulation)", "not replayed"]);
+}
+
+#[test]
 fn examples_are_short_numbered_without_gaps_and_listed() {
     let list = fs::read_to_string(folder().join("README.md")).expect("the examples have a list");
     let own = include_str!("examples.rs");
@@ -136,7 +146,7 @@ fn examples_are_short_numbered_without_gaps_and_listed() {
         let runs = own.contains(&format!("\"{stem}\"")) || name.ends_with(".py");
         assert!(runs, "no test runs {name}");
     }
-    assert_eq!(numbered().len(), 13);
+    assert_eq!(numbered().len(), 16);
 }
 
 #[test]

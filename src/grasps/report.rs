@@ -126,7 +126,8 @@ impl Report<'_> {
         if self.ending.grasps > 0 {
             return "a smaller `--spread`, a larger `--per-facet`, or fewer grasps";
         }
-        if counts.reached == 0 {
+        // Fewer than one pose in a thousand: what is in the way there is not what to mend first.
+        if 1000 * counts.reached < counts.poses {
             return match counts.causes().first() {
                 Some((Reason::Collision, _)) => {
                     "the object meets palm or obstacles, or links touch it: move obstacles, widen \

@@ -23,6 +23,10 @@ fn audited(scenario: &str, slot: Slot, lie: &str) -> (Result<Run, RunError>, Opt
     let mut scenario = load(scenario).unwrap();
     scenario.choices.use_plugin(slot, "liar");
     scenario.choices.set(slot, "lie", json!(lie));
+    if slot == Slot::Surface {
+        // Relays hardly ever ask for shortest paths.
+        scenario.choices.set(Slot::GraphStrategy, "relays", json!(0));
+    }
     let watch = Stopwatch::start();
     let options = RunOptions { stop: &NeverStops, ..watch.options(1) };
     setup(&scenario).unwrap().run_audited(&options, Depth::Full)

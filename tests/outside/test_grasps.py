@@ -1,9 +1,13 @@
 """Grasps in bulk, opened by numpy and MuJoCo, re-checked by pinocchio, coal and Clarabel; planted faults, seen."""
 
 import json
+import subprocess
+import sys
+from pathlib import Path
 
 import mujoco
 import numpy as np
+import pandas
 import pytest
 
 from bulk import Grasps, share_that_stays
@@ -92,3 +96,35 @@ def test_lines_and_resets_hold_the_same(regrasp, tmp_path):
     assert np.abs(resets["joint_pos"] - arrays["joints"]).max() < 1e-6
     assert resets["object_quat"].dtype == np.float32
     assert np.allclose(resets["joint_effort"], arrays["efforts"], equal_nan=True)
+
+
+def test_pandas_reads_the_lines(regrasp, tmp_path):
+    regrasp("grasps", "sphere", "-n", 30, "-o", "g.jsonl", cwd=tmp_path)
+    regrasp("grasps", "sphere", "-n", 30, "-o", "g.npz", cwd=tmp_path)
+    frame, arrays = pandas.read_json(tmp_path / "g.jsonl", lines=True), np.load(tmp_path / "g.npz")
+    assert len(frame) == 30 and np.allclose(frame["margin"], arrays["margin"])
+
+
+def test_a_parquet_table_holds_the_same(regrasp, tmp_path):
+    regrasp("grasps", "allegro-cube", "-n", 30, "--graph", "-o", "g.npz", cwd=tmp_path)
+    example = Path(__file__).parents[2] / "examples" / "16_grasps_as_parquet.py"
+    command = [sys.executable, str(example), "g.npz", "g.parquet"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0 and "30 grasps" in done.stdout, done.stderr
+    arrays, frame = np.load(tmp_path / "g.npz"), pandas.read_parquet(tmp_path / "g.parquet")
+    assert len(frame) == 30 and frame["friction"].notna().any()
+    for name in ["joints", "object_position", "efforts"]:
+        assert np.array_equal(np.stack(frame[name]), arrays[name], equal_nan=True)
+    points = np.array([[list(point) for point in grasp] for grasp in frame["contact_point_O"]])
+    assert np.array_equal(points, arrays["contact_point_O"], equal_nan=True)
+
+
+def test_every_form_opens_in_its_tool(regrasp, tmp_path):
+    """The atlas and the results of a protocol too: tables in pandas, documents in json."""
+    regrasp("atlas", "--hands", "free-fingertips", "--shapes", "cube", "--size", "50mm", "--goals", 4, "-o", "a", cwd=tmp_path)
+    cells, attempts = (pandas.read_csv(tmp_path / "a" / f"{name}.csv") for name in ("cells", "attempts"))
+    assert len(cells) == 1 and len(attempts) == 4
+    assert json.loads((tmp_path / "a" / "atlas.json").read_text())["format"] == "regrasp-atlas"
+    regrasp("suite", "hidex", "-o", "s", cwd=tmp_path)
+    results = json.loads((tmp_path / "s" / "results.json").read_text())
+    assert results["format"] == "regrasp-suite" and len(results["trials"]) == 60

@@ -93,17 +93,21 @@ impl GraspSource<'_> {
             chunk.counts.reject(Reason::Collision);
             return Ok(());
         }
-        let mut twins = Twins::new(self.wish.spread, self.task.object.mesh.radius());
+        let mut twins = Twins::new(self.wish.spread, self.law.radius());
         let (mut kept, mut last) = (0, None);
         for _ in 0..TRIES * self.wish.per_pose {
             if kept == self.wish.per_pose {
                 break;
             }
-            chunk.counts.tried += 1;
             let choice = match last.filter(|_| self.regrasp.is_some()) {
                 Some(last) => combiner.vary(&last, &mut context.random),
                 None => combiner.draw(&mut context.random),
             };
+            // What was drawn before was refused, or would be a twin of itself.
+            if !combiner.is_new(&choice) {
+                continue;
+            }
+            chunk.counts.tried += 1;
             let q = match combiner.configuration(&choice) {
                 Ok(q) => q,
                 Err(reason) => {

@@ -6,7 +6,7 @@ use regrasp_api::{
 };
 
 /// What a finger does in a combination: the number of its contact in its pool, `None` where it rests.
-pub(crate) type Choice = [Option<usize>; MAX_FINGERS];
+pub(crate) type Choice = [Option<u8>; MAX_FINGERS];
 
 /// Draws combinations, and remembers which postures of two fingers go together.
 pub(crate) struct Combiner<'p> {
@@ -21,6 +21,8 @@ pub(crate) struct Combiner<'p> {
     /// The number of each finger's first posture, the resting one, among all; and how many there are.
     first: [usize; MAX_FINGERS],
     postures: usize,
+    /// The combinations that were drawn so far.
+    drawn: Vec<Choice>,
 }
 
 impl<'p> Combiner<'p> {
@@ -35,7 +37,26 @@ impl<'p> Combiner<'p> {
         // Fingers that may not rest must hold.
         let must = fingers.len() - pools.restful.len();
         let sizes = (least.max(must), most.min(able.len()));
-        Self { task, pools, fingers, able, sizes, apart: vec![0; postures * postures], first, postures }
+        Self {
+            task,
+            pools,
+            fingers,
+            able,
+            sizes,
+            apart: vec![0; postures * postures],
+            first,
+            postures,
+            drawn: Vec::new(),
+        }
+    }
+
+    /// Whether the combination was not drawn before; remembers it.
+    pub fn is_new(&mut self, choice: &Choice) -> bool {
+        let is_new = !self.drawn.contains(choice);
+        if is_new {
+            self.drawn.push(*choice);
+        }
+        is_new
     }
 
     /// Whether there is any combination at all.
@@ -50,12 +71,13 @@ impl<'p> Combiner<'p> {
         let mut holding: FingerSet =
             self.fingers.iter().filter(|f| !self.pools.restful.contains(*f)).collect();
         while holding.len() < size {
-            let left: Vec<FingerIndex> = self.able.iter().filter(|f| !holding.contains(*f)).collect();
-            holding = holding.with(left[random.index(left.len())]);
+            let left = self.able.len() - self.able.intersection(holding).len();
+            let mut others = self.able.iter().filter(|finger| !holding.contains(*finger));
+            holding = others.nth(random.index(left)).map_or(holding, |finger| holding.with(finger));
         }
         let mut choice = [None; MAX_FINGERS];
         for finger in holding.iter() {
-            choice[finger.index()] = Some(random.index(self.pools.touching(finger).len()));
+            choice[finger.index()] = Some(random.index(self.pools.touching(finger).len()) as u8);
         }
         choice
     }
@@ -76,20 +98,22 @@ impl<'p> Combiner<'p> {
             (false, false) => holding < self.sizes.1,
         };
         if fits {
-            varied[finger.index()] = if rests { None } else { Some(number) };
+            varied[finger.index()] = if rests { None } else { Some(number as u8) };
         }
         varied
     }
 
     /// The configuration of a combination in which all fingers keep clear of each other; else why not.
     pub fn configuration(&mut self, choice: &Choice) -> Result<Configuration, Reason> {
-        let mut q = self.pools.resting.clone();
         for finger in self.fingers.iter() {
             for other in FingerSet::first(finger.index()).iter() {
                 if !self.are_apart((other, choice[other.index()]), (finger, choice[finger.index()])) {
                     return Err(Reason::Collision);
                 }
             }
+        }
+        let mut q = self.pools.resting.clone();
+        for finger in self.fingers.iter() {
             (q.contacts[finger], q.joints[finger]) = self.posture(finger, choice[finger.index()]);
         }
         Ok(q)
@@ -100,20 +124,20 @@ impl<'p> Combiner<'p> {
         self.task.admissible.admit_grasp(self.task, q, context)
     }
 
-    fn posture(&self, finger: FingerIndex, choice: Option<usize>) -> Posture {
+    fn posture(&self, finger: FingerIndex, choice: Option<u8>) -> Posture {
         match choice {
-            Some(number) => self.pools.touching(finger)[number],
+            Some(number) => self.pools.touching(finger)[usize::from(number)],
             None => (None, self.pools.resting.joints[finger]),
         }
     }
 
     fn are_apart(
         &mut self,
-        (a, first): (FingerIndex, Option<usize>),
-        (b, second): (FingerIndex, Option<usize>),
+        (a, first): (FingerIndex, Option<u8>),
+        (b, second): (FingerIndex, Option<u8>),
     ) -> bool {
-        let number = |finger: FingerIndex, choice: Option<usize>| {
-            self.first[finger.index()] + choice.map_or(0, |number| number + 1)
+        let number = |finger: FingerIndex, choice: Option<u8>| {
+            self.first[finger.index()] + choice.map_or(0, |number| usize::from(number) + 1)
         };
         let place = number(a, first) * self.postures + number(b, second);
         if self.apart[place] == 0 {

@@ -9,7 +9,7 @@ pub struct Counts {
     pub poses: u64,
     /// Poses at which enough fingers have contacts.
     pub reached: u64,
-    /// Combinations of contacts that were tried.
+    /// Combinations of contacts that were tried, those drawn again at the same pose not counted.
     pub tried: u64,
     /// Grasps that are like another of their pose or an earlier one.
     pub twins: u64,

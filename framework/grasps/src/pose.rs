@@ -22,6 +22,11 @@ impl PoseLaw {
         Self { lower, upper, radius }
     }
 
+    /// Largest distance of the object's surface from its origin (m).
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
     /// A pose, which fingers may not reach at all.
     pub fn draw(&self, random: &mut Random) -> Pose {
         let p = Vec3::from_fn(|i, _| random.range(self.lower[i], self.upper[i]));

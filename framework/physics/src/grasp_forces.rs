@@ -59,9 +59,9 @@ pub fn dragged_forces(
 /// The forces by which the fingers that touch hold the object in one grasp at rest.
 ///
 /// The analytic centre of those that need at most `share` (0.01 to 1) of the friction, within the joints'
-/// efforts; where there are none, those that need least of it; `None` where none of any friction do. The
-/// arguments are those of [`grasp_forces`], which is what to ask along a motion: there forces must be
-/// continuous.
+/// efforts; where there are none, of those that need little more than the least (which is known to a tenth);
+/// `None` where that is more than `settings.relied`, or beyond the efforts. The arguments are those of
+/// [`grasp_forces`], which is what to ask along a motion: there forces must be continuous.
 pub fn grasp_forces_at(
     (hand, object, g_H): (&dyn Hand, &ObjectModel, Vec3),
     friction: Friction,

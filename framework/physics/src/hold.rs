@@ -1,18 +1,22 @@
 //! The efforts with which the fingers hold the object along a motion.
 
 use crate::force::{ContactForce, Friction};
-use crate::holding::{Balanced, Bearing, Forces, Press, Search, Smallest, share_of, smallest_share, stacked};
+use crate::holding::{
+    Balanced, Bearing, Forces, Press, Search, Smallest, share_between, share_of, smallest_share, stacked,
+};
 use crate::settings::SimulationSettings;
 use crate::stage::Stage;
 use nalgebra::Vector6;
 use regrasp_api::{
     Configuration, EffortBounds, FingerIndex, FingerJoints, FingerSet, Hand, ObjectModel, PerFinger, Vec3,
 };
-use std::slice;
 
 /// How much of the friction that a stage leaves over its forces may rely on, so that efforts stay away from
 /// their limits.
 pub(crate) const EASE: f64 = 0.25;
+/// How near the bounds of the smallest share are, relative to it, for one grasp by itself: what is taken is a
+/// share some way above it.
+const ROUGHLY: f64 = 0.1;
 /// Shares of the friction below this are not striven for: nothing slips there, and squeezing harder has a
 /// price.
 pub(crate) const ENOUGH: f64 = 0.3;
@@ -118,17 +122,30 @@ impl<'a> Holder<'a> {
     }
 
     /// How all fingers that touch hold the object at rest: by the analytic centre of the forces that need at
-    /// most `share` of the friction, and where there are none, by those that need least.
+    /// most `share` of the friction; where there are none, of those that need little more than the least, and
+    /// `None` where that is more than may be relied on.
     pub fn one(&self, q: &Configuration, share: f64) -> Option<Held> {
-        let grip = self.grip(q, q.holding(), &self.press, None);
-        match centre(&grip, share, None) {
-            Some(forces) => Some(self.found(q, &grip, &forces)),
-            None => {
-                let states = slice::from_ref(q);
-                let stage = Stage { states, times: &[0.0], moving: None, forces: &[] };
-                self.stage(&stage).pop().flatten()
-            }
+        let holding = q.holding();
+        let grip = self.grip(q, holding, &self.press, None);
+        if let Some(forces) = centre(&grip, share, None) {
+            return Some(self.found(q, &grip, &forces));
         }
+        let most = self.relied;
+        let need = |grip: &Grip, low: f64| {
+            share_between(&grip.bearings, &grip.wanted, (low.min(most), most), (most, ROUGHLY))
+        };
+        let (grip, need) = match need(&grip, share) {
+            Some(need) => (grip, need),
+            // Joints at their limits have nothing left to correct with, but dropping the object is worse.
+            None => {
+                let roomy = self.grip(q, holding, &Press { effort_share: 1.0, ..self.press }, None);
+                let need = need(&roomy, 0.0)?;
+                (roomy, need)
+            }
+        };
+        let eased = need.share + EASE * (most - need.share).max(0.0);
+        let forces = centre(&grip, eased, Some(&need.forces)).unwrap_or(need.forces);
+        Some(self.found(q, &grip, &forces))
     }
 
     fn grip(

@@ -3,12 +3,13 @@
 use crate::admissible::Stable;
 use crate::error::{End, PlanError, explain};
 use crate::foresight::outlook;
-use crate::session::{Call, Session, Work};
+use crate::session::{Call, Counted, Session, Work};
 use crate::shortest_path::Length;
 use regrasp_api::{
     Admissible, CallError, Configuration, Contact, FingerGrasp, FingerIndex, FingerJoints, FingerSet,
     PerFinger, Pose, PoseRequest, Tally, Task,
 };
+use std::collections::VecDeque;
 
 /// How far a given contact point may lie from the surface (m).
 const CONTACT_TOLERANCE: f64 = 1e-3;
@@ -135,7 +136,7 @@ pub(crate) fn same_grasp(
     from: &Configuration,
     X_HO: &Pose,
 ) -> Result<Option<Configuration>, CallError> {
-    let Work { plugins, task, context } = work;
+    let Work { plugins, task, context, .. } = work;
     let Some(q) = plugins.sampler.close(task, X_HO, &from.contacts, from, context)? else { return Ok(None) };
     Ok(Stable.admit(task, &q, context)?.is_none().then_some(q))
 }
@@ -160,13 +161,24 @@ pub(crate) fn sort_by_ease<'p>(
 
 /// Grasps at a pose, found one after the other: the `k`-th is a pure function of its number.
 pub(crate) struct Finder {
-    pub kind: Call,
-    pub leg: u64,
-    pub X_HO: Pose,
+    kind: Call,
+    leg: u64,
+    X_HO: Pose,
+    /// Calls of the sampler whose results were consumed.
     pub calls: u64,
+    /// The results of the next ones, as far as they were computed ahead.
+    ready: VecDeque<Counted<Result<Option<Configuration>, CallError>>>,
 }
 
+/// Calls that are made ahead for each thread: so many are nearly always consumed at the ends of a problem.
+const AHEAD: usize = 2;
+
 impl Finder {
+    /// For the pose of an end of a leg.
+    pub fn new(kind: Call, leg: u64, X_HO: Pose) -> Self {
+        Self { kind, leg, X_HO, calls: 0, ready: VecDeque::new() }
+    }
+
     /// The next grasp, or `None` after as many calls of the sampler as one search may spend.
     pub fn next(
         &mut self,
@@ -175,20 +187,39 @@ impl Finder {
         choices: &[FingerSet],
         tally: &mut Tally,
     ) -> Result<Option<Configuration>, CallError> {
-        let end = self.calls + GRASP_CALLS;
-        while self.calls < end {
-            let key = self.leg << 32 | self.calls;
+        for _ in 0..GRASP_CALLS {
+            if self.ready.is_empty() {
+                let many = if session.threads() > 1 { AHEAD * session.threads() } else { 1 };
+                self.ready =
+                    session.draw(many, |i| self.call(self.calls + i as u64, session, task, choices)).into();
+            }
+            let Some(found) = self.ready.pop_front() else { break };
             self.calls += 1;
-            let found = session.counted(task, (self.kind, key, 0), |work| {
-                let holding = choices[work.context.random.index(choices.len())];
-                let request = PoseRequest::At(self.X_HO);
-                work.plugins.sampler.sample(work.task, request, holding, &mut work.context)
-            });
             tally.add(&found.tally);
             if let Some(q) = found.result? {
                 return Ok(Some(q));
             }
         }
         Ok(None)
+    }
+
+    /// Forgets what was computed ahead: what is looked for from now on is something else.
+    pub fn turn(&mut self) {
+        self.ready.clear();
+    }
+
+    /// The call of the sampler with this number.
+    fn call(
+        &self,
+        number: u64,
+        session: &Session<'_>,
+        task: &Task<'_>,
+        choices: &[FingerSet],
+    ) -> Counted<Result<Option<Configuration>, CallError>> {
+        session.counted(task, (self.kind, self.leg << 32 | number, 0), |work| {
+            let holding = choices[work.context.random.index(choices.len())];
+            let request = PoseRequest::At(self.X_HO);
+            work.plugins.sampler.sample(work.task, request, holding, &mut work.context)
+        })
     }
 }

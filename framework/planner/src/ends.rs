@@ -74,7 +74,7 @@ impl Run<'_> {
             return Ok((vec![self.graph.add_node(q, origin)], None));
         }
         let leg = place.saturating_sub(1) as u64;
-        let mut finder = Finder { kind, leg, X_HO, calls: 0 };
+        let mut finder = Finder::new(kind, leg, X_HO);
         let mut found = Vec::new();
         for _ in 0..count {
             match finder.next(&self.session, &self.task, &self.choices, &mut self.tally)? {
@@ -98,10 +98,12 @@ impl Run<'_> {
     fn weaker_grasps(&mut self, finder: &mut Finder, count: usize) -> Result<Vec<Configuration>, CallError> {
         let most = self.request.problem.limits.budget.max_nodes as u64;
         let (mut found, mut tries) = (Vec::new(), 0);
+        finder.turn();
         while tries < count || (found.is_empty() && finder.calls < most) {
             found.extend(finder.next(&self.session, &self.end_task, &self.end_choices, &mut self.tally)?);
             tries += 1;
         }
+        finder.turn();
         Ok(found)
     }
 

@@ -25,7 +25,7 @@ impl Run<'_> {
             Ok(()) | Err(CallError::Interrupted) => {}
             Err(error) => return Err(error.into()),
         }
-        glide(&self.task, &mut self.draft.segments);
+        glide(&self.session, &self.task, &mut self.draft.segments)?;
         self.draft.align_quaternions();
         let mut motion = Motion { segments: std::mem::take(&mut self.draft.segments) };
         self.timed(Phase::Timing, |run| {

@@ -5,7 +5,10 @@
 //! each posture moves to the mean of its neighbours, some rounds over, and where the way still bends it gets
 //! more postures; all as long as everything stays clear.
 
-use regrasp_api::{Configuration, FingerIndex, FingerJoints, FingerSet, LoneFinger, Task, TipRule};
+use crate::session::Session;
+use regrasp_api::{
+    CallError, Configuration, FingerIndex, FingerJoints, FingerSet, LoneFinger, Task, TipRule,
+};
 use regrasp_plan::{Segment, SegmentKind};
 
 /// Rounds of averaging that are tried in turn until one leaves the way free. Our choice: n rounds even out
@@ -20,12 +23,16 @@ const BEND: f64 = 2.4;
 const CUTS: f64 = 6.0;
 
 /// Evens out the ways of all regrasps in place.
-pub(crate) fn glide(task: &Task<'_>, segments: &mut [Segment]) {
-    for segment in segments {
+pub(crate) fn glide(
+    session: &Session<'_>,
+    task: &Task<'_>,
+    segments: &mut [Segment],
+) -> Result<(), CallError> {
+    session.each(segments, |segment| {
         if let SegmentKind::Regrasp(finger) = segment.kind {
             glide_one(task, finger, &mut segment.states);
         }
-    }
+    })
 }
 
 fn glide_one(task: &Task<'_>, finger: FingerIndex, states: &mut Vec<Configuration>) {

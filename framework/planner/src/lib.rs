@@ -38,10 +38,12 @@ mod run;
 mod search;
 mod segments;
 mod session;
+mod share;
 mod shortest_path;
 mod smooth;
 mod solve;
 mod steps;
+mod tail;
 mod view;
 
 pub use admissible::{Holdable, Leavable, Stable, admission};

@@ -6,12 +6,14 @@ use crate::run::Run;
 use crate::segments::end;
 use crate::session::Call;
 use regrasp_api::{
-    CallError, EdgeKind, EdgeVerdict, NodeId, Origin, Pose, Random, Rotation, Vec3, angle_between,
-    interpolate,
+    CallError, Configuration, EdgeKind, EdgeVerdict, NodeId, Origin, Pose, Random, Rotation, Vec3,
+    angle_between, interpolate,
 };
 use regrasp_plan::Segment;
 use std::f64::consts::PI;
 
+/// How many threads one relay keeps busy, more or less.
+const BUSY: usize = 4;
 /// How far (rad) a way round may turn away from the straight one half-way. Our choice.
 const ASIDE: f64 = 0.8;
 
@@ -30,16 +32,21 @@ impl Run<'_> {
         round: u64,
     ) -> Result<Option<Vec<Segment>>, CallError> {
         let steps = self.first_relay(leg, start, round)?;
-        if let Some(last) = steps.as_deref().and_then(<[Segment]>::last) {
-            let goal = self.graph.add_node(end(last).clone(), Origin::Goal);
-            let kind = EdgeKind::TransferRegrasp;
-            let edge = self.graph.add_edge(start, goal, kind, EdgeVerdict::Executable);
-            self.graph.set_steps(edge, steps.clone().unwrap_or_default());
-            self.used.insert(edge);
+        if let Some((steps, last)) = steps.as_deref().and_then(|steps| Some((steps, steps.last()?))) {
+            let goal = self.enter_way(start, end(last).clone(), steps);
             self.ends.extend((leg == 0).then_some((End::Start, start)));
             self.ends.push((End::Goal(leg), goal));
         }
         Ok(steps)
+    }
+
+    /// Steps from a node to a goal enter the graph.
+    pub fn enter_way(&mut self, start: NodeId, end: Configuration, steps: &[Segment]) -> NodeId {
+        let goal = self.graph.add_node(end, Origin::Goal);
+        let edge = self.graph.add_edge(start, goal, EdgeKind::TransferRegrasp, EdgeVerdict::Executable);
+        self.graph.set_steps(edge, steps.to_vec());
+        self.used.insert(edge);
+        goal
     }
 
     fn first_relay(
@@ -57,7 +64,8 @@ impl Run<'_> {
         };
         let (session, task, from) = (&self.session, &self.task, self.graph.node(start));
         let (poses, turn_length) = (&self.poses[leg..], self.request.object.mesh.radius());
-        let tried = session.ahead(count, |number| {
+        let many = session.threads().div_ceil(BUSY);
+        let tried = session.until_found(many, count, |session, number| {
             session.counted(task, (Call::Relay, leg as u64, number as u64), |work| {
                 let route = route(poses, number, task.workspace, turn_length, &mut work.context.random);
                 relay(work, from, &route, &effort)

@@ -114,7 +114,11 @@ impl Run<'_> {
             let (goals, finder) = self.timed(Phase::Endpoints, |run| run.goals_of(leg, start))?;
             let ended = self.timed(Phase::Search, |run| run.search((leg, start), goals, finder, budget))?;
             match ended {
-                Ended::Found(segments) => return Ok(self.reached(leg, start, segments)),
+                Ended::Found(segments) => {
+                    let segments =
+                        self.timed(Phase::Relay, |run| run.with_relayed_end(leg, start, segments))?;
+                    return Ok(self.reached(leg, start, segments));
+                }
                 Ended::Stopped => return Err(Halt::Stuck(Stuck::Search(leg))),
                 Ended::Anew => self.graph.truncate(before),
             }

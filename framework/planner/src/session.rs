@@ -1,11 +1,10 @@
-//! What one run shares: the plugins, the keyed random streams, the threads that compute ahead.
+//! What one run shares: the plugins, the keyed random streams, the threads.
 
-use rayon::prelude::*;
+use crate::share::lent;
 use regrasp_api::{
     CallError, ClosedChainSampler, Context, GraphStrategy, Interrupt, LocalPlanner, Plugins, Random, Tally,
-    Task, unless_fault,
+    Task,
 };
-use std::collections::VecDeque;
 
 /// The plugins that drive the search; contact model, stability test and surface are in the [`Task`].
 #[derive(Clone, Copy)]
@@ -63,6 +62,8 @@ pub(crate) enum Call {
     RoadmapEnd = 14,
     /// A random pair of start and goal.
     RoadmapPair = 15,
+    /// A relay to a leg's goal from a place on the way that the graph found.
+    Tail = 16,
 }
 
 /// The key of a call: what it is for, and two numbers that tell calls of a kind apart.
@@ -79,6 +80,7 @@ pub(crate) struct Session<'a> {
 
 /// One call at work: the plugins that it may ask, what it works on, and what it draws from and counts in.
 pub(crate) struct Work<'a> {
+    pub session: Session<'a>,
     pub plugins: Drivers<'a>,
     pub task: &'a Task<'a>,
     pub context: Context<'a>,
@@ -96,7 +98,15 @@ impl<'a> Session<'a> {
     where
         'a: 'w,
     {
-        Work { plugins: self.plugins, task, context: Context::new(self.random(key), self.interrupt) }
+        self.work_drawing(task, self.random(key))
+    }
+
+    fn work_drawing<'w>(&self, task: &'w Task<'w>, random: Random) -> Work<'w>
+    where
+        'a: 'w,
+    {
+        let context = Context::new(random, self.interrupt);
+        Work { session: *self, plugins: self.plugins, task, context }
     }
 
     /// The random stream of the call with this key: it depends on nothing else but the seed.
@@ -105,70 +115,46 @@ impl<'a> Session<'a> {
     }
 
     /// Makes the call with this key, and returns its result with what it counted.
-    ///
-    /// A plugin that panicked where it could not return an error makes the result worthless: then it is that
-    /// panic.
     pub fn counted<T>(
         &self,
         task: &Task<'_>,
         key: Key,
         call: impl FnOnce(&mut Work<'_>) -> Result<T, CallError>,
     ) -> Counted<Result<T, CallError>> {
-        let mut work = self.work(task, key);
-        let result = unless_fault(call(&mut work));
-        Counted { result, tally: work.context.tally }
+        counted(self.work(task, key), call)
+    }
+
+    /// Does one of the parts of a call that know nothing of each other: its random stream depends on a word
+    /// of the call's and on its number.
+    pub fn part<T>(
+        &self,
+        task: &Task<'_>,
+        (word, number): (u64, usize),
+        part: impl FnOnce(&mut Work<'_>) -> Result<T, CallError>,
+    ) -> Counted<Result<T, CallError>> {
+        counted(self.work_drawing(task, Random::from_key(word, number as u64, 0, 0)), part)
     }
 
     /// Ends the run where it should stop.
     pub fn proceed(&self) -> Result<(), CallError> {
         Context::new(Random::from_key(0, 0, 0, 0), self.interrupt).proceed()
     }
+}
 
-    /// The results of `call(0), call(1), …` in order, computed ahead by the threads there are.
-    ///
-    /// The caller may stop anywhere: with one thread nothing beyond that was computed, with several it is
-    /// thrown away.
-    pub fn ahead<'s, T: Send + 's>(
-        &'s self,
-        count: usize,
-        call: impl Fn(usize) -> T + Sync + 's,
-    ) -> impl Iterator<Item = T> + 's {
-        let mut ready = VecDeque::new();
-        let mut next = 0;
-        std::iter::from_fn(move || {
-            if ready.is_empty() && next < count {
-                let end = count.min(next + self.threads());
-                ready.extend(self.compute(next..end, &call));
-                next = end;
-            }
-            ready.pop_front()
-        })
-    }
-
-    /// The results of `call(0), …, call(count - 1)`, computed by the threads there are.
-    pub fn draw<T: Send>(&self, count: usize, call: impl Fn(usize) -> T + Sync) -> Vec<T> {
-        self.compute(0..count, &call)
-    }
-
-    /// How many threads compute.
-    pub fn threads(&self) -> usize {
-        self.pool.map_or(1, rayon::ThreadPool::current_num_threads)
-    }
-
-    fn compute<T: Send>(&self, range: std::ops::Range<usize>, call: &(impl Fn(usize) -> T + Sync)) -> Vec<T> {
-        match self.pool {
-            Some(pool) if range.len() > 1 => pool.install(|| range.into_par_iter().map(call).collect()),
-            _ => range.map(call).collect(),
-        }
-    }
+fn counted<T>(
+    mut work: Work<'_>,
+    call: impl FnOnce(&mut Work<'_>) -> Result<T, CallError>,
+) -> Counted<Result<T, CallError>> {
+    let result = lent(|| call(&mut work));
+    Counted { result, tally: work.context.tally }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use regrasp_api::{
-        Action, Configuration, Contact, FingerSet, GraphView, Path, PerFinger, Pose, PoseRequest, Reached,
-        Target, Uninterrupted,
+        Action, CallError::Interrupted, Configuration, Contact, FingerSet, GraphView, Path, PerFinger, Pose,
+        PoseRequest, Reached, Target, Uninterrupted, report_fault, take_fault,
     };
     use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -239,6 +225,37 @@ mod tests {
         let session = session(None);
         let taken = session.ahead(10, |_| calls.fetch_add(1, Ordering::Relaxed)).take(3).count();
         assert_eq!((taken, calls.load(Ordering::Relaxed)), (3, 3));
+    }
+
+    #[test]
+    fn calls_after_one_that_found_something_are_interrupted() {
+        let pool = pool(2);
+        let session = session(pool.as_ref());
+        let tally = Tally::default;
+        let found = session.until_found(2, 2, |session, number| {
+            if number == 0 {
+                return Counted { result: Ok(Some(7)), tally: tally() };
+            }
+            while !session.interrupt.interrupted() {
+                std::thread::yield_now();
+            }
+            Counted { result: Err(Interrupted), tally: tally() }
+        });
+        let found: Vec<_> = found.map(|found| found.result).collect();
+        assert_eq!(found, [Ok(Some(7)), Err(Interrupted)]);
+    }
+
+    #[test]
+    fn a_lent_thread_gets_back_what_was_left_on_it() {
+        let fault = |plugin: &str| CallError::Panicked { plugin: plugin.into(), message: "oh".into() };
+        report_fault(fault("own"));
+        let there = lent(|| {
+            report_fault(fault("other"));
+            Ok(())
+        });
+        assert_eq!((there, take_fault()), (Err(fault("other")), Some(fault("own"))));
+        report_fault(fault("own"));
+        assert_eq!((lent(|| Ok(3)), take_fault()), (Ok(3), Some(fault("own"))));
     }
 
     #[test]

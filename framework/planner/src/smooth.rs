@@ -68,9 +68,10 @@ impl Smoother<'_> {
         let (mut found, mut failed) = (None, Vec::new());
         {
             let (this, number) = (&*self, *left);
-            for (i, tried) in
-                this.session.ahead(count, |i| this.attempt(&shortcuts[i], number - i)).enumerate()
-            {
+            let attempts = this.session.until_found(this.session.threads(), count, |session, i| {
+                this.attempt(session, &shortcuts[i], number - i)
+            });
+            for (i, tried) in attempts.enumerate() {
                 *left -= 1;
                 tally.add(&tried.tally);
                 match tried.result? {
@@ -118,10 +119,11 @@ impl Smoother<'_> {
     /// The segments of a shortcut if it works and needs fewer regrasps; `number` tells the tries apart.
     fn attempt(
         &self,
+        session: &Session<'_>,
         shortcut: &Shortcut,
         number: usize,
     ) -> Counted<Result<Option<Vec<Segment>>, CallError>> {
-        self.session.counted(self.task, (Call::Smooth, number as u64, 0), |work| {
+        session.counted(self.task, (Call::Smooth, number as u64, 0), |work| {
             let segments = self.segments_of(work, shortcut)?;
             Ok(segments.filter(|segments| regrasps(segments) < self.regrasps_between(shortcut)))
         })

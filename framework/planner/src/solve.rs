@@ -48,8 +48,10 @@ fn solve_with(request: &Request<'_>, through: Option<Through<'_>>) -> Result<Out
             ends: Vec::new(),
             used: BTreeSet::new(),
         };
-        let ended = run.legs();
-        run.finish(ended)
+        session.within(|| {
+            let ended = run.legs();
+            run.finish(ended)
+        })
     })
 }
 

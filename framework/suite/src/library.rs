@@ -31,8 +31,8 @@ pub const PROTOCOLS: &[BuiltIn] = &[
     protocol!("sahbani-2007"),
     protocol!("hidex"),
     protocol!("dlr-cube", "cube.toml"),
-    protocol!("poise", "cube.toml", "ball.toml"),
-    protocol!("drop", "cube.toml"),
+    protocol!("poise", "prism.toml"),
+    protocol!("drop", "cube.toml", "small-cube.toml"),
     protocol!("bih", "cylinder.toml"),
     protocol!("rgmc"),
     protocol!("ctr", "cube.toml", "ball.toml"),
@@ -113,7 +113,13 @@ mod tests {
             let name = path.file_name().unwrap().to_string_lossy().into_owned();
             assert!(PROTOCOLS.iter().any(|protocol| protocol.name == name), "`{name}` is not built in");
             let readme = std::fs::read_to_string(path.join("README.md")).unwrap();
-            assert!(readme.contains("## Like for like") && readme.contains("## Chosen here"), "{name}");
+            let (protocol, _) = load(&name).unwrap_or_else(|error| panic!("{error}"));
+            let published = protocol.series.iter().flat_map(|series| &series.published);
+            let figures = published.map(|published| format!("| {} |", published.figure));
+            let told = [protocol.like.trim().to_owned(), protocol.chosen.trim().to_owned()];
+            for words in told.into_iter().chain(figures) {
+                assert!(readme.contains(&words), "{name}: its README does not have: {words}");
+            }
         }
     }
 

@@ -57,17 +57,46 @@ pub fn problems(series: &Series) -> Vec<Problem> {
             };
             (0..*count as u64).map(one).collect()
         }
-        Problems::Consecutive { trials, most } => {
+        Problems::Consecutive { trials, most, apart_deg, .. } => {
             let one = |trial: u64| {
                 let mut random = Random::from_key(0, STREAM, trial, 1);
-                let goals = (0..*most).map(|_| Turn::new(&random.rotation(), Vec3::zeros())).collect();
-                Problem { seed: trial, goals }
+                let mut before = Rotation::identity();
+                let goals = (0..*most).map(|_| {
+                    before = apart(&mut random, &before, apart_deg.to_radians());
+                    Turn::new(&before, Vec3::zeros())
+                });
+                Problem { seed: trial, goals: goals.collect() }
             };
             (0..*trials as u64).map(one).collect()
         }
         Problems::Continuing { trials, most, axis, step_deg } => {
             let goals: Vec<Turn> = (1..=*most).map(|k| about(*axis, *step_deg * k as f64)).collect();
             (0..*trials as u64).map(|seed| Problem { seed, goals: goals.clone() }).collect()
+        }
+    }
+}
+
+/// What is aimed at for one goal of a trial, one after the other until there is a plan: the goal itself, and
+/// what counts as the goal.
+pub(crate) fn aims(problems: &Problems, (trial, step): (u64, usize), goal: &Turn) -> Vec<Turn> {
+    let Problems::Consecutive { within_deg, within, aims, .. } = problems else { return vec![*goal] };
+    let mut random = Random::from_key(0, STREAM, trial, 2 + step as u64);
+    let [w, x, y, z] = goal.orientation;
+    let wanted = Rotation::new_normalize(nalgebra::Quaternion::new(w, x, y, z));
+    let near = |_| {
+        let turn = turn(&mut random, Some([0.0, *within_deg])) * wanted;
+        let displaced = random.direction() * random.range(0.0, *within);
+        Turn::new(&turn, Vec3::from(goal.displacement) + displaced)
+    };
+    [*goal].into_iter().chain((1..*aims).map(near)).collect()
+}
+
+/// An orientation, uniform over those at least so far (rad) from another.
+fn apart(random: &mut Random, from: &Rotation, least: f64) -> Rotation {
+    loop {
+        let turn = random.rotation();
+        if turn.angle_to(from) >= least {
+            return turn;
         }
     }
 }
@@ -90,6 +119,7 @@ fn about(axis: [f64; 3], angle_deg: f64) -> Turn {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::protocol::consecutive;
 
     fn series(problems: Problems) -> Series {
         Series {
@@ -123,8 +153,8 @@ mod tests {
 
     #[test]
     fn fewer_trials_are_the_first_of_more() {
-        let few = problems(&series(Problems::Consecutive { trials: 2, most: 5 }));
-        let more = problems(&series(Problems::Consecutive { trials: 4, most: 5 }));
+        let few = problems(&series(consecutive(2, 5)));
+        let more = problems(&series(consecutive(4, 5)));
         assert_eq!(few, more[..2]);
         assert_ne!(more[0].goals, more[1].goals);
     }
@@ -140,5 +170,38 @@ mod tests {
         let [w, _, _, z] = made[0].goals[3].orientation;
         assert!(w.abs() > 1.0 - 1e-12 && z.abs() < 1e-12);
         assert_eq!(problems(&series(Problems::CubeGroup { seeds: 2 })).len(), 46);
+    }
+
+    fn rotation(turn: &Turn) -> Rotation {
+        let [w, x, y, z] = turn.orientation;
+        Rotation::new_normalize(nalgebra::Quaternion::new(w, x, y, z))
+    }
+
+    #[test]
+    fn goals_in_turn_are_apart_and_aims_count_as_their_goal() {
+        let asked = Problems::Consecutive {
+            trials: 3,
+            most: 40,
+            apart_deg: 90.0,
+            within_deg: 20.0,
+            within: 0.01,
+            aims: 5,
+        };
+        for (trial, problem) in problems(&series(asked.clone())).iter().enumerate() {
+            let mut before = Rotation::identity();
+            for (step, goal) in problem.goals.iter().enumerate() {
+                assert!(rotation(goal).angle_to(&before) >= 90_f64.to_radians());
+                before = rotation(goal);
+                let all = aims(&asked, (trial as u64, step), goal);
+                assert_eq!((all.len(), all[0]), (5, *goal));
+                for aim in &all {
+                    assert!(rotation(aim).angle_to(&before) <= 20_f64.to_radians() + 1e-9);
+                    assert!(Vec3::from(aim.displacement).norm() <= 0.01);
+                }
+                assert_ne!(all[1], all[2]);
+            }
+        }
+        let goal = &problems(&series(consecutive(1, 1)))[0].goals[0];
+        assert_eq!(aims(&consecutive(1, 1), (0, 0), goal), [*goal]);
     }
 }

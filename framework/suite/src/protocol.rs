@@ -107,6 +107,23 @@ pub enum Problems {
         /// The most goals of one trial.
         #[schemars(range(min = 1, max = 10_000))]
         most: usize,
+        /// The least angle (degrees) between a goal and the one before.
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 170.0), extend("x-unit" = "degrees"))]
+        apart_deg: f64,
+        /// An orientation this near to a goal's (degrees) counts as the goal's: where there is no plan to the
+        /// goal itself, others are aimed at.
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "degrees"))]
+        within_deg: f64,
+        /// How far (m) from the start's position the object may be at a goal.
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "m"))]
+        within: f64,
+        /// How many poses are aimed at for each goal, itself among them.
+        #[serde(default = "one")]
+        #[schemars(range(min = 1, max = 1000))]
+        aims: usize,
     },
     /// Turn after turn about one axis, until one is not reached.
     Continuing {
@@ -123,6 +140,10 @@ pub enum Problems {
         #[schemars(range(min = 1.0, max = 180.0), extend("x-unit" = "degrees"))]
         step_deg: f64,
     },
+}
+
+fn one() -> usize {
+    1
 }
 
 /// A figure that was published.
@@ -144,4 +165,10 @@ impl Series {
     pub fn is_chain(&self) -> bool {
         matches!(self.problems, Problems::Consecutive { .. } | Problems::Continuing { .. })
     }
+}
+
+/// A chain of goals that are reached exactly or not.
+#[cfg(test)]
+pub(crate) fn consecutive(trials: usize, most: usize) -> Problems {
+    Problems::Consecutive { trials, most, apart_deg: 0.0, within_deg: 0.0, within: 0.0, aims: 1 }
 }

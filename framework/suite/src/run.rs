@@ -1,6 +1,7 @@
 //! Planning, verifying and replaying the problems of a protocol.
 
 use crate::library::Files;
+use crate::problem::aims;
 use crate::{Attempt, Problem, Protocol, Replayed, Series, SuiteError, Trial, Turn, Unreplayable, problems};
 use regrasp_api::{
     GoalDescription, Pose, PoseDescription, Problem as Task, Rotation, StartDescription, Vec3,
@@ -49,7 +50,7 @@ pub fn run(
 ) -> Result<Vec<Trial>, SuiteError> {
     let (mut trials, ended) = (known, AtomicBool::new(false));
     for (number, (series, scenario)) in protocol.series.iter().zip(scenarios).enumerate() {
-        let job = Job { number, scenario, registry, options, ended: &ended };
+        let job = Job { number, series, scenario, registry, options, ended: &ended };
         let is_known = |k: usize| trials.iter().any(|t| (t.series, t.problem) == (number, k));
         let all = problems(series).into_iter().enumerate();
         let open: Vec<(usize, Problem)> = all.filter(|(k, _)| !is_known(*k)).collect();
@@ -87,6 +88,7 @@ pub fn scenarios(
 /// A series at work.
 struct Job<'a> {
     number: usize,
+    series: &'a Series,
     scenario: &'a Scenario,
     registry: &'a Registry,
     options: &'a Options<'a>,
@@ -141,11 +143,14 @@ impl Job<'_> {
             false => problem.goals.iter().map(Some).collect(),
         };
         for (step, turn) in goals.into_iter().enumerate() {
-            let task = match turn {
-                None => base.clone(),
-                Some(turn) => task(base, start.clone(), turn)?,
+            let aims = turn.map_or(Vec::new(), |turn| aims(&self.series.problems, (k as u64, step), turn));
+            let tasks: Vec<Task> = match turn {
+                None => vec![base.clone()],
+                Some(_) => {
+                    aims.iter().map(|turn| task(base, start.clone(), turn)).collect::<Result<_, _>>()?
+                }
             };
-            let Some((attempt, plan)) = self.attempt(setup, &task, problem.seed + step as u64)? else {
+            let Some((attempt, plan)) = self.any(setup, &tasks, problem.seed + step as u64)? else {
                 return Ok(None);
             };
             trial.attempts.push(attempt);
@@ -156,6 +161,29 @@ impl Job<'_> {
             plans.push(plan);
         }
         Ok(Some((trial, plans)))
+    }
+
+    /// A plan to the first of some goals to which there is one; time and nodes are those of all that were
+    /// tried. `None` where it was stopped.
+    fn any(
+        &self,
+        setup: &Setup<'_>,
+        tasks: &[Task],
+        seed: u64,
+    ) -> Result<Option<(Attempt, Option<Plan>)>, SuiteError> {
+        let mut so_far: Option<Attempt> = None;
+        for task in tasks {
+            let Some((mut attempt, plan)) = self.attempt(setup, task, seed)? else { return Ok(None) };
+            if let Some(before) = &so_far {
+                attempt.planning_s += before.planning_s;
+                attempt.generated += before.generated;
+            }
+            if plan.is_some() {
+                return Ok(Some((attempt, plan)));
+            }
+            so_far = Some(attempt);
+        }
+        Ok(so_far.map(|attempt| (attempt, None)))
     }
 
     /// One plan; `None` where it was stopped.

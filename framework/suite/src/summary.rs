@@ -136,12 +136,13 @@ pub fn json(protocol: &Protocol, outcomes: &[Outcome], trials: &[Trial]) -> Stri
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Trial;
     use crate::outcome::tests::{attempt, series};
-    use crate::{Problems, Trial};
+    use crate::protocol::consecutive;
 
     #[test]
     fn each_row_says_where_either_method_works() {
-        let series = series(Problems::Consecutive { trials: 1, most: 2 });
+        let series = series(consecutive(1, 2));
         let trial = Trial { attempts: vec![attempt(true, Some(true)); 2], ..Trial::default() };
         let outcomes = [Outcome::of(&series, &[&trial])];
         let protocol = Protocol {

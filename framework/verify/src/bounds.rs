@@ -2,14 +2,14 @@
 //! by how little bodies bend from their straight way.
 
 use crate::motion::Motions;
-use crate::scene::Scene;
+use crate::scene::{Scene, Solidity};
 use crate::shape::Core;
 use crate::solid::Gap;
 use crate::supported::Supported;
 use crate::touch::Touch;
 use crate::track::Frames;
 use nalgebra::Point3;
-use regrasp_api::{Body, MAX_FINGERS, Vec3};
+use regrasp_api::{Body, MAX_FINGERS, Pose, Vec3};
 
 /// Where everything is at the samples of a step, and its contacts there.
 #[derive(Clone, Copy)]
@@ -46,6 +46,20 @@ impl<'s> Bounds<'s> {
             }
             _ => f64::NEG_INFINITY,
         }
+    }
+
+    /// The same of a rod and a ball around the other body; minus infinity where neither is a rod. For a round
+    /// object it is nearly the distance itself.
+    pub(crate) fn rods(&self, pair: usize, frames: &Frames) -> f64 {
+        let (a, b) = self.scene.pairs[pair];
+        let (first, second) = (&self.scene.bodies[a], &self.scene.bodies[b]);
+        let (X_HA, X_HB) = (self.scene.pose(a, frames), self.scene.pose(b, frames));
+        let bound = |(ball, X_HBall): (Option<(Vec3, f64)>, &Pose), (rod, X_HRod): (&Solidity, &Pose)| {
+            let (Some((p, r)), Core::Segment(..)) = (ball, &rod.core) else { return f64::NEG_INFINITY };
+            let p_H = (X_HBall * Point3::from(p)).coords;
+            rod.core.rod_to(X_HRod, &p_H) - rod.radius - r
+        };
+        bound((first.ball, X_HA), (second, X_HB)).max(bound((second.ball, X_HB), (first, X_HA)))
     }
 
     /// The same at two samples and all the time between, of a box that does not move, and a rod or a ball: by

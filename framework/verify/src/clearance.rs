@@ -273,7 +273,11 @@ impl<'s> ClearanceCheck<'s> {
                 touch.filter(|_| !self.scene.has_twin()).map_or(ANYWHERE, |touch| touch.facet),
             );
         }
-        let turns = self.turns(leg, frames);
+        let mut turns = self.turns(leg, frames);
+        for (bound, pair) in &mut turns {
+            *bound = bound.max(self.bounds.rods(*pair, frames));
+        }
+        turns.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut closest: Option<(f64, usize)> = None;
         for &(bound, pair) in &turns {
             let least = closest.map_or(f64::INFINITY, |(distance, _)| distance);

@@ -81,6 +81,15 @@ impl Core {
         (local.abs() - half).sup(&Vec3::zeros()).norm()
     }
 
+    /// How far a point in H is from a segment whose body is at `X_HB` (m); minus infinity for what is none.
+    pub(crate) fn rod_to(&self, X_HB: &Pose, p_H: &Vec3) -> f64 {
+        let Self::Segment(from, to) = self else { return f64::NEG_INFINITY };
+        let p_B = X_HB.inverse_transform_point(&Point3::from(*p_H)).coords;
+        let (along, away) = (to - from, p_B - from);
+        let part = (along.dot(&away) / along.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        (away - along * part).norm()
+    }
+
     /// A lower bound of how far a box whose body is at `X_HB` is from some points in H, any of which may be
     /// off by `play` (m): the box around them, along the axes of this one. Minus infinity for what is no box.
     pub(crate) fn box_to_points(&self, X_HB: &Pose, points_H: &[Vec3], play: f64) -> f64 {

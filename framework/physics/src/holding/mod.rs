@@ -16,7 +16,7 @@ pub(crate) use edged::{balance, centre_of_weights, may_start, start};
 pub use load::{Answer, Bearings, EdgesAnswer, HeldLoad};
 pub(crate) use newton::Search;
 pub use newton::{Balanced, Forces};
-pub(crate) use share::{LARGEST, LEAST, share_of};
+pub(crate) use share::{LARGEST, LEAST, share_between, share_of};
 pub use share::{Smallest, smallest_share};
 
 #[cfg(test)]

@@ -35,6 +35,17 @@ pub(crate) fn share_of(bearings: &[Bearing], forces: &Forces) -> f64 {
 /// (S. Boyd, B. Wegbreit, "Fast computation of optimal contact forces", IEEE T-RO 2007, bisect over bounds in
 /// the same manner).
 pub fn smallest_share(bearings: &[Bearing], wanted: &Vector6<f64>, from: f64) -> Option<Smallest> {
+    share_between(bearings, wanted, (0.0, from), (LARGEST, NEAR))
+}
+
+/// The same where shares up to `low` are known to be too small, none above `most` is of use, and the bounds
+/// of the smallest share need only be as `near`, relative to it.
+pub(crate) fn share_between(
+    bearings: &[Bearing],
+    wanted: &Vector6<f64>,
+    (mut low, from): (f64, f64),
+    (most, near): (f64, f64),
+) -> Option<Smallest> {
     let find = |share: f64| {
         let search = Search { bearings, share };
         match search.any(&search.start(), wanted) {
@@ -42,18 +53,18 @@ pub fn smallest_share(bearings: &[Bearing], wanted: &Vector6<f64>, from: f64) ->
             _ => None,
         }
     };
-    let (mut low, mut share) = (0.0, from);
+    let mut share = from;
     let mut best = loop {
         if let Some(found) = find(share) {
             break found;
         }
-        if share >= LARGEST {
+        if share >= most {
             return None;
         }
-        (low, share) = (share, (2.0 * share).min(LARGEST));
+        (low, share) = (share, (2.0 * share).min(most));
     };
     for _ in 0..MOST {
-        if best.share - low <= NEAR * best.share || best.share <= LEAST {
+        if best.share - low <= near * best.share || best.share <= LEAST {
             break;
         }
         let middle = 0.5 * (low + best.share);

@@ -188,3 +188,31 @@ fn edges_hold_nearly_as_the_cone_round_them() {
         }
     }
 }
+
+/// One grasp by itself: with half of the friction where that is enough, else with little more than the least,
+/// and nothing where all that may be relied on holds nothing.
+#[test]
+fn one_grasp_needs_half_or_little_more_than_the_least() {
+    let (hand, friction) = (hand(), Friction::point(0.7));
+    for mut object in shapes() {
+        let mut shares = Vec::new();
+        for mass in [0.02, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 300.0] {
+            object.mass = mass;
+            let q = ring(&hand, &object);
+            let (settings, parts) = (SimulationSettings::default(), (&hand as &dyn Hand, &object, G));
+            let held = grasp_forces_at(parts, friction, &q, 0.5, &settings).unwrap();
+            let states = [q.clone()];
+            let stage = Stage { states: &states, times: &[0.0], moving: None, forces: &[] };
+            let least = grasp_forces(parts, friction, &[stage], &settings).unwrap()[0][0].clone();
+            let Some(held) = held else {
+                assert!(least.is_none_or(|least| least.share > 0.98), "{mass} kg is held by some forces");
+                continue;
+            };
+            let (force, torque) = resultant(&q, &object, &held);
+            assert!((force + G * mass).norm() < 1e-6 && torque.norm() < 1e-7, "{force} {torque}");
+            assert!(held.share <= 1.0 && held.effort_share <= 1.0, "{held:?}");
+            shares.push(held.share);
+        }
+        assert!(shares[0] <= 0.5 && shares.len() < 8, "{shares:?}");
+    }
+}

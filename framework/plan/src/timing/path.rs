@@ -71,14 +71,15 @@ impl Path {
         bounds: &JointBounds,
         limits: &TimingLimits,
     ) {
-        let changes = from.joints.iter().flat_map(|(finger, joints)| {
-            to.joints[finger].iter().zip(joints.iter()).map(|(b, a)| b - a).collect::<Vec<_>>()
-        });
-        let changes: Vec<f64> = changes.collect();
-        let p = to.X_HO.translation.vector - from.X_HO.translation.vector;
-        let angle = angle_between(&from.X_HO.rotation, &to.X_HO.rotation);
-        let speed = limits.object_speed.map_or(0.0, |limit| p.norm() / limit);
-        let turn = limits.object_turn_rate.map_or(0.0, |limit| angle / limit);
+        let first = self.chords.len();
+        for (finger, joints) in from.joints.iter() {
+            self.chords.extend(to.joints[finger].iter().zip(joints.iter()).map(|(b, a)| b - a));
+        }
+        let changes = &mut self.chords[first..];
+        let distance = || (to.X_HO.translation.vector - from.X_HO.translation.vector).norm();
+        let angle = || angle_between(&from.X_HO.rotation, &to.X_HO.rotation);
+        let speed = limits.object_speed.map_or(0.0, |limit| distance() / limit);
+        let turn = limits.object_turn_rate.map_or(0.0, |limit| angle() / limit);
         let over =
             |limits: &[f64]| changes.iter().zip(limits).map(|(d, limit)| d.abs() / limit).fold(0.0, f64::max);
         let object = speed.max(turn);
@@ -92,7 +93,7 @@ impl Path {
             self.stops[k + 1] = true;
         }
         let scale = if span > 0.0 { 1.0 / span } else { 0.0 };
-        self.chords.extend(changes.iter().map(|d| d * scale));
+        changes.iter_mut().for_each(|d| *d *= scale);
         self.spans.push(span);
     }
 

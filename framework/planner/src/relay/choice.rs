@@ -8,6 +8,11 @@ use crate::shortest_path::Length;
 use regrasp_api::{CallError, Configuration, FingerIndex, FingerSet, Hint, PerFinger};
 use std::cmp::Reverse;
 
+/// The points of a station's fingers are looked at in so many rounds ...
+const ROUNDS: usize = 4;
+/// ... and those of a finger in a round by so many parts.
+const SHARES: usize = 2;
+
 /// Another grasp at the same pose.
 #[derive(Clone, Debug)]
 pub(crate) struct Choice {
@@ -41,14 +46,10 @@ impl<'a> Station<'a> {
         effort: &'a Effort,
     ) -> Result<Self, CallError> {
         let looks = Looks::ahead(work.task, route, place);
-        let mut tracks = Vec::new();
-        for finger in q.joints.fingers() {
+        let mut tracks: Vec<Vec<Track>> = others(work, &looks, q, effort)?;
+        for (finger, tracks) in q.joints.fingers().zip(&mut tracks) {
             let own = Touch { contact: q.contacts[finger], joints: q.joints[finger] };
-            let mut all = vec![looks.follow(work.task, finger, own)];
-            if own.contact.is_some() {
-                all.extend(others(work, &looks, (q, finger), effort)?);
-            }
-            tracks.push(all);
+            tracks.insert(0, looks.follow(work.task, finger, own));
         }
         Ok(Self { q, effort, looks, tracks })
     }
@@ -70,14 +71,12 @@ impl<'a> Station<'a> {
                 }
             }
         }
+        let looks = work.parts(picks.len(), |i, work| self.looks_together(work, &picks[i]))?;
         let mut all = Vec::new();
-        for pick in picks {
+        for (pick, looks) in picks.iter().zip(looks).filter(|(_, looks)| *looks > 1) {
             let moved = pick.iter().filter(|(_, track)| **track > 0).count();
-            let looks = self.looks_together(work, &pick)?;
-            if looks > 1 {
-                let q = self.configuration(&pick, 0);
-                all.push(Choice { q, moved, reach: self.looks.places[looks - 1] });
-            }
+            let q = self.configuration(pick, 0);
+            all.push(Choice { q, moved, reach: self.looks.places[looks - 1] });
         }
         all.sort_by_cached_key(|choice| Length(worth(choice.moved, choice.reach)));
         Ok(all)
@@ -139,18 +138,49 @@ impl<'a> Station<'a> {
     }
 }
 
-/// Tracks of a finger from other touches at the pose of `q`, the farthest reaching first.
+/// Tracks of each finger that holds from other touches at the pose of `q`, the farthest reaching first.
+///
+/// In rounds of some points for each finger that has not enough: where nearly every touch is admitted, as on
+/// a ball, more of them are no better.
 fn others(
     work: &mut Work<'_>,
     looks: &Looks,
-    (q, finger): (&Configuration, FingerIndex),
+    q: &Configuration,
     effort: &Effort,
+) -> Result<Vec<Vec<Track>>, CallError> {
+    let enough = 2 * effort.kept;
+    let mut all: Vec<Vec<Track>> = vec![Vec::new(); q.joints.len()];
+    for _ in 0..ROUNDS {
+        let wanting =
+            |finger: &FingerIndex| q.contacts[*finger].is_some() && all[finger.index()].len() < enough;
+        let fingers: Vec<FingerIndex> = q.joints.fingers().filter(wanting).collect();
+        let found = work.parts(SHARES * fingers.len(), |i, work| {
+            some_others(work, looks, (q, fingers[i / SHARES]), effort.points / (ROUNDS * SHARES))
+        })?;
+        for (i, found) in found.into_iter().enumerate() {
+            all[fingers[i / SHARES].index()].extend(found);
+        }
+    }
+    for found in &mut all {
+        found.truncate(enough);
+        found.sort_by_key(|track| Reverse(track.len()));
+        found.truncate(effort.kept);
+    }
+    Ok(all)
+}
+
+/// Tracks of a finger from those of so many points that it may touch.
+fn some_others(
+    work: &mut Work<'_>,
+    looks: &Looks,
+    (q, finger): (&Configuration, FingerIndex),
+    points: usize,
 ) -> Result<Vec<Track>, CallError> {
     let (task, context) = (work.task, &mut work.context);
     let (model, radius) = (task.hand.finger(finger), task.hand.fingertip_radius());
     let mut found: Vec<Track> = Vec::new();
     let (mut tried, mut near) = (q.clone(), q.joints[finger]);
-    for _ in 0..effort.points {
+    for _ in 0..points {
         let contact = task.surface.sample(&mut context.random);
         let p_HF = q.X_HO.rotation * contact.tip_center(radius) + q.X_HO.translation.vector;
         if (p_HF - model.p_HReach).norm_squared() > model.reach * model.reach {
@@ -164,12 +194,6 @@ fn others(
         if task.admissible.admit_finger(task, &tried, finger, FingerSet::EMPTY, context)?.is_none() {
             found.push(looks.follow(task, finger, Touch { contact: Some(contact), joints }));
         }
-        // Where nearly every touch is admitted, as on a ball, more of them are no better.
-        if found.len() == 2 * effort.kept {
-            break;
-        }
     }
-    found.sort_by_key(|track| Reverse(track.len()));
-    found.truncate(effort.kept);
     Ok(found)
 }

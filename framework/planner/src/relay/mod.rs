@@ -13,7 +13,7 @@ mod follow;
 mod roll;
 mod route;
 
-pub(crate) use effort::{QUICK, THOROUGH};
+pub(crate) use effort::{Effort, QUICK, THOROUGH};
 pub(crate) use route::Route;
 
 use crate::order::{has_order, regrasp_all};
@@ -21,7 +21,6 @@ use crate::segments::moves;
 use crate::session::Work;
 use crate::shortest_path::Length;
 use choice::{Choice, Station};
-use effort::Effort;
 use regrasp_api::{CallError, Configuration};
 use regrasp_plan::Segment;
 use roll::Roll;
@@ -70,18 +69,30 @@ pub(crate) fn relay(
     let mut tried = 0;
     while let Some(best) = relay.best() {
         work.context.proceed()?;
-        if !relay.is_led_to(work, best)? {
+        let is_complete = relay.nodes[best].roll.is_complete;
+        let goes_on = !is_complete && tried < effort.stations;
+        let Some((regrasps, next)) = relay.look(work, best, goes_on)? else {
             relay.nodes[best].tries = BACK_OFF.len();
-        } else if relay.nodes[best].roll.is_complete {
+            continue;
+        };
+        relay.nodes[best].regrasps = Some(regrasps);
+        if is_complete {
             return Ok(Some(relay.steps(best)));
-        } else if tried < effort.stations {
-            relay.extend(work, best)?;
-            tried += 1;
-        } else {
+        }
+        if !goes_on {
             break;
         }
+        relay.nodes[best].tries += 1;
+        relay.nodes.extend(next);
+        tried += 1;
     }
     Ok(None)
+}
+
+/// What is looked for at a node: what comes before it, and what may come after it.
+enum Part {
+    Before(Option<Vec<Segment>>),
+    After(Vec<Node>),
 }
 
 impl Relay<'_> {
@@ -100,32 +111,63 @@ impl Relay<'_> {
         })
     }
 
-    /// Whether the regrasps are found that lead to a node.
-    fn is_led_to(&mut self, work: &mut Work<'_>, node: usize) -> Result<bool, CallError> {
-        let this = &self.nodes[node];
-        let (None, Some((before, index))) = (&this.regrasps, this.before) else { return Ok(true) };
-        let found = regrasp_all(work, &self.nodes[before].roll.states[index], &this.roll.states[0])?;
-        let is_found = found.is_some();
-        self.nodes[node].regrasps = found;
-        Ok(is_found)
+    /// The regrasps that lead to a node and, where the motion goes on from there, the nodes after it: of an
+    /// idle thread nobody asks whether the first were found. `None` where no regrasps lead to it.
+    fn look(
+        &self,
+        work: &mut Work<'_>,
+        node: usize,
+        goes_on: bool,
+    ) -> Result<Option<(Vec<Segment>, Vec<Node>)>, CallError> {
+        let (session, task, word) = (work.session, work.task, work.context.random.word());
+        let part = |i: usize, work: &mut Work<'_>| match i {
+            0 => self.regrasps_to(work, node).map(Part::Before),
+            _ => self.after(work, node).map(Part::After),
+        };
+        let count = 1 + usize::from(goes_on);
+        let parts = session.ahead(count, |i| session.part(task, (word, i), |work| part(i, work)));
+        let (mut before, mut after) = (Vec::new(), Vec::new());
+        for found in parts {
+            work.context.tally.add(&found.tally);
+            match found.result? {
+                Part::Before(None) => return Ok(None),
+                Part::Before(Some(regrasps)) => before = regrasps,
+                Part::After(nodes) => after = nodes,
+            }
+        }
+        Ok(Some((before, after)))
     }
 
-    /// Looks for regrasps on the roll of a node after which the object rolls on.
-    fn extend(&mut self, work: &mut Work<'_>, node: usize) -> Result<(), CallError> {
+    /// The regrasps that lead to a node.
+    fn regrasps_to(&self, work: &mut Work<'_>, node: usize) -> Result<Option<Vec<Segment>>, CallError> {
+        let Node { before, regrasps, roll, .. } = &self.nodes[node];
+        match (regrasps, *before) {
+            (None, Some((before, index))) => {
+                regrasp_all(work, &self.nodes[before].roll.states[index], &roll.states[0])
+            }
+            (known, _) => Ok(known.clone()),
+        }
+    }
+
+    /// Nodes whose regrasps are made on the roll of this one, and after which the object rolls on.
+    fn after(&self, work: &mut Work<'_>, node: usize) -> Result<Vec<Node>, CallError> {
         let Node { roll, count, tries, .. } = &self.nodes[node];
-        let (so_far, back) = (*count, BACK_OFF[*tries]);
+        let back = BACK_OFF[*tries];
         let (from, to) = (roll.places[0], roll.reached());
         let wanted = from + back * (to - from);
         let index = roll.places.partition_point(|&place| place < wanted).min(roll.places.len() - 1);
-        let (q, place) = (roll.states[index].clone(), roll.places[index]);
-        self.nodes[node].tries += 1;
-        let station = Station::new(work, self.route, (&q, place), self.effort)?;
+        let (q, place) = (&roll.states[index], roll.places[index]);
+        let station = Station::new(work, self.route, (q, place), self.effort)?;
         let choices = station.choices(work, |moved, reach| self.worth(moved, reach))?;
-        for (choice, roll) in self.rolled(work, (&q, place), choices)? {
-            let (before, count) = (Some((node, index)), so_far + choice.moved);
-            self.nodes.push(Node { before, regrasps: None, count, roll, reach: choice.reach, tries: 0 });
-        }
-        Ok(())
+        let node = |(choice, roll): (Choice, Roll)| Node {
+            before: Some((node, index)),
+            regrasps: None,
+            count: count + choice.moved,
+            roll,
+            reach: choice.reach,
+            tries: 0,
+        };
+        Ok(self.rolled(work, (q, place), choices)?.into_iter().map(node).collect())
     }
 
     /// The rolls of the first few choices that hold.
@@ -135,18 +177,23 @@ impl Relay<'_> {
         (q, place): (&Configuration, f64),
         choices: Vec<Choice>,
     ) -> Result<Vec<(Choice, Roll)>, CallError> {
+        let (session, task, word) = (work.session, work.task, work.context.random.word());
+        let rolls = session.ahead(choices.len(), |i| {
+            session.part(task, (word, i), |work| {
+                let there = &choices[i].q;
+                has_order(work, q, there)?.then(|| Roll::along(work, self.route, there, place)).transpose()
+            })
+        });
         let (mut rolled, mut tried) = (Vec::new(), 0);
-        for choice in choices {
-            if tried == ROLLS {
-                break;
-            }
-            if !has_order(work, q, &choice.q)? {
-                continue;
+        for (choice, roll) in choices.iter().zip(rolls) {
+            work.context.tally.add(&roll.tally);
+            let Some(roll) = roll.result? else { continue };
+            if roll.reached() > place {
+                rolled.push((choice.clone(), roll));
             }
             tried += 1;
-            let roll = Roll::along(work, self.route, &choice.q, place)?;
-            if roll.reached() > place {
-                rolled.push((choice, roll));
+            if tried == ROLLS {
+                break;
             }
         }
         Ok(rolled)

@@ -127,3 +127,17 @@ fn shapes_without_sense_are_refused() {
     refuse(Shape::HalfSpace { normal: [0.0; 3], offset: 0.0 });
     refuse(Shape::Mesh(regrasp_api::MeshSource { file: Some("a.stl".into()), ..Default::default() }));
 }
+
+#[test]
+fn rods_are_as_far_from_a_point_as_its_exact_distance() {
+    let mut random = Random::from_key(6, 0, 0, 0);
+    for _ in 0..200 {
+        let (X, p) = (pose(&mut random), random.direction() * random.range(0.0, 0.3));
+        let rod = Core::Segment(random.direction() * 0.05, random.direction() * 0.05);
+        let exact = distance(&rod, &X, &Core::Point(p), &Pose::identity(), false);
+        assert!((rod.rod_to(&X, &p) - exact).abs() < 1e-9);
+    }
+    assert_eq!(cube().rod_to(&Pose::identity(), &Vec3::zeros()), f64::NEG_INFINITY);
+    let point = Core::Segment(Vec3::x(), Vec3::x());
+    assert!((point.rod_to(&Pose::identity(), &Vec3::zeros()) - 1.0).abs() < 1e-12);
+}

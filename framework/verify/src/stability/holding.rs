@@ -4,6 +4,8 @@
 use super::force::{Contact, Correction, Forces, LEAST_SLACK, scaled};
 use super::held::Held;
 use super::load::icosahedron;
+use super::response::{Response, Shares};
+use super::room::share_of;
 use super::socp;
 use crate::hand::Chains;
 use crate::touch::Touch;
@@ -48,7 +50,7 @@ struct Trail {
 struct Grasp<'h> {
     held: &'h Held,
     /// For each contact and joint behind it, see [`HoldingCheck::shares`].
-    shares: Vec<Vec<(f64, Vec3, f64)>>,
+    shares: Shares,
     correction: Correction,
 }
 
@@ -197,6 +199,9 @@ impl HoldingCheck {
         if self.trails.len() <= way {
             self.trails.resize(way + 1, Trail::default());
         }
+        if let Some(slack) = self.respond(way, &grasp, &wanted[0]) {
+            return Ok(slack);
+        }
         let Trail { carried, solved } = std::mem::take(&mut self.trails[way]);
         if let Some(carried) = carried
             && let Ok((slack, carried)) = self.check(&grasp, carried, &wanted)
@@ -209,6 +214,40 @@ impl HoldingCheck {
         let (slack, forces) = self.check(&grasp, forces, &wanted)?;
         self.trails[way] = Trail { carried: Some(forces), solved: slack };
         Ok(slack)
+    }
+
+    /// The slack that the carried forces for the weight alone prove, if it is enough.
+    fn respond(&mut self, way: usize, grasp: &Grasp<'_>, weight: &Vector6<f64>) -> Option<f64> {
+        let Trail { carried, solved } = &self.trails[way];
+        let before = (carried.as_ref()?.first()?, weight);
+        // The corners of the disturbances' icosahedra.
+        let corner = icosahedron()[0].norm();
+        let sizes = [self.force_size(), self.torque_size()].map(|size| size * corner);
+        let Grasp { held, correction, .. } = grasp;
+        let response = Response::new(held, correction, before, sizes);
+        let slack = response.slack(&grasp.shares, self.load.max_normal_force.map(|most| most / self.unit));
+        let is_proved = self.is_proved(grasp, response.residual, slack) && slack > DWINDLED * solved;
+        is_proved.then(|| {
+            self.trails[way].carried.iter_mut().for_each(|carried| carried[0] = response.base);
+            slack
+        })
+    }
+
+    /// Whether what balances a residual exactly, smaller than residual/singular, leaves neither cones nor
+    /// efforts.
+    fn is_proved(&self, grasp: &Grasp<'_>, residual: f64, slack: f64) -> bool {
+        let steepest = 1.0 + grasp.steepest();
+        slack >= LEAST_SLACK && residual * steepest <= 0.5 * grasp.correction.singular * slack
+    }
+
+    /// The size of the disturbing force over the unit.
+    fn force_size(&self) -> f64 {
+        self.load.disturbance_force / self.unit
+    }
+
+    /// The size of the disturbing torque over unit and length.
+    fn torque_size(&self) -> f64 {
+        self.load.disturbance_torque / (self.unit * self.length)
     }
 
     /// Forces for each of the wanted wrenches, near to the best ones: those that the solver found for one
@@ -251,8 +290,7 @@ impl HoldingCheck {
     fn wanted(&self, weight_O: &Vec3) -> Vec<Vector6<f64>> {
         let f = -weight_O / self.unit;
         let weight = Vector6::new(f.x, f.y, f.z, 0.0, 0.0, 0.0);
-        let force = self.load.disturbance_force / self.unit;
-        let torque = self.load.disturbance_torque / (self.unit * self.length);
+        let (force, torque) = (self.force_size(), self.torque_size());
         let mut wanted = Vec::with_capacity(1 + 2 * icosahedron().len());
         wanted.push(weight);
         if force > 0.0 || torque > 0.0 {
@@ -274,7 +312,6 @@ impl HoldingCheck {
     ) -> Result<(f64, Vec<Forces>), f64> {
         let Grasp { held, correction, .. } = grasp;
         let mut least = f64::INFINITY;
-        let steepest = 1.0 + grasp.steepest();
         for (forces, wanted) in forces.iter_mut().zip(wanted) {
             *forces = correction.towards(&held.contacts, forces, wanted);
             let mut residual = -wanted;
@@ -283,9 +320,7 @@ impl HoldingCheck {
                 residual += contact.wrench(&forces[i]);
                 slack = slack.min(self.slack(grasp, i, forces));
             }
-            // What balances the residual exactly is smaller than residual/singular, and must leave neither
-            // cones nor efforts.
-            if !(slack >= LEAST_SLACK && residual.norm() * steepest <= 0.5 * correction.singular * slack) {
+            if !self.is_proved(grasp, residual.norm(), slack) {
                 return Err(slack.min(0.0));
             }
             least = least.min(slack);
@@ -294,7 +329,7 @@ impl HoldingCheck {
     }
 
     /// What a joint's effort, over its limit, is of each part of the force at its contact.
-    fn shares(&self, held: &Held) -> Vec<Vec<(f64, Vec3, f64)>> {
+    fn shares(&self, held: &Held) -> Shares {
         let each = held.contacts.iter().zip(&held.rows);
         each.map(|(contact, rows)| rows.iter().map(|row| row.of(contact, self.length, self.unit)).collect())
             .collect()
@@ -309,9 +344,8 @@ impl HoldingCheck {
         if let Some(most) = self.load.max_normal_force {
             slack = slack.min(most / self.unit - force.normal);
         }
-        for (normal, tangential, spin) in &grasp.shares[i] {
-            let share = normal * force.normal + tangential.dot(&force.tangential) + spin * force.spin;
-            slack = slack.min(1.0 - share.abs());
+        for share in &grasp.shares[i] {
+            slack = slack.min(1.0 - share_of(share, force).abs());
         }
         slack
     }

@@ -15,6 +15,7 @@ mod holding;
 mod holds;
 mod load;
 mod own;
+mod response;
 mod room;
 mod six;
 mod slice;

@@ -1,6 +1,6 @@
 //! Where a ball can touch a surface: on facets, over convex edges and vertices, and in dents on both sides.
 
-use regrasp_api::{Mesh, Vec3};
+use regrasp_api::{Mesh, Vec3, tangents};
 
 /// Calls `visit` with points and normals on a facet and its sides at which a ball of a radius (m) may touch a
 /// surface, no farther apart than `spacing` (m). With [`on_vertices`] they are all over it.
@@ -38,6 +38,32 @@ pub(super) fn on_facet([a, b, c]: [Vec3; 3], spacing: f64, mut visit: impl FnMut
     }
 }
 
+/// Points of a facet in the square of a size (m) round one of its points, `spacing` (m) apart, with the
+/// facet's normal.
+pub(super) fn round_place(
+    mesh: &Mesh,
+    (facet, p): (u32, &Vec3),
+    (size, spacing): (f64, f64),
+    visit: &mut dyn FnMut(&Vec3, &Vec3),
+) {
+    let (corners, n) = (mesh.corners(facet), mesh.normal(facet));
+    let [x, y] = tangents(&n).map(|tangent| tangent * spacing);
+    let each = (size / (2.0 * spacing)).ceil() as i32;
+    for i in -each..=each {
+        for j in -each..=each {
+            let p = p + x * f64::from(i) + y * f64::from(j);
+            if is_on(corners, &n, &p) {
+                visit(&p, &n);
+            }
+        }
+    }
+}
+
+/// Whether a point of a triangle's plane is on the triangle.
+fn is_on(corners: [Vec3; 3], n: &Vec3, p: &Vec3) -> bool {
+    (0..3).all(|k| n.dot(&(corners[(k + 1) % 3] - corners[k]).cross(&(p - corners[k]))) >= 0.0)
+}
+
 /// Points along a side of a facet.
 fn along(mesh: &Mesh, (facet, side): (u32, usize), spacing: f64, mut visit: impl FnMut(&Vec3)) {
     let corners = mesh.corners(facet);
@@ -60,12 +86,9 @@ fn in_dent(
     let (corners, n) = (mesh.corners(facet), mesh.normal(facet));
     let inward = n.cross(&(corners[(side + 1) % 3] - corners[side])).normalize();
     let off = inward * (radius * (0.5 * mesh.neighbors(facet)[side].bend).tan().abs());
-    let is_on = |p: &Vec3| {
-        (0..3).all(|k| n.dot(&(corners[(k + 1) % 3] - corners[k]).cross(&(p - corners[k]))) >= 0.0)
-    };
     along(mesh, (facet, side), 0.5 * spacing, |p| {
         let p = p + off;
-        if is_on(&p) {
+        if is_on(corners, &n, &p) {
             visit(facet, &p, &n);
         }
     });

@@ -1,6 +1,6 @@
 //! What a fingertip's ball that touches a twin feels of the true mesh.
 
-use super::places::{of_facet, on_facet, on_vertices};
+use super::places::{of_facet, on_vertices, round_place};
 use crate::clearance::{Field, MeshSolid};
 use regrasp_api::{Mesh, Vec3};
 use std::sync::Arc;
@@ -16,8 +16,8 @@ const BETWEEN: f64 = 5e-6;
 /// ... and in dents, as a part of the tolerance: there a ball rolls along where two facets hold it, and feels
 /// what no place on one of them tells.
 const BETWEEN_IN_DENTS: f64 = 0.2;
-/// Facets on which a gap or depth this near (m) to the largest was found are looked at more closely ...
-const CLOSE: f64 = 4e-5;
+/// Where a gap or depth this near (m) to the largest was found, it is looked round more closely ...
+const CLOSE: f64 = 8e-5;
 /// ... at places so many times nearer to each other: in a dent the ball lies deepest just beside the edge.
 const CLOSER: f64 = 4.0;
 
@@ -67,33 +67,34 @@ impl Touch {
         let spacing = (SPACING * self.radius).max((area / MOST_PLACES).sqrt());
         let mut range = Range::new(self, own.as_ref(), most);
         let facets: Vec<u32> = (0..twin.facets().len() as u32).collect();
-        let mut deepest = range.visit_all(&facets, |range, facet| {
-            let mut deepest: f64 = 0.0;
-            of_facet(twin, facet, (self.radius, spacing), &mut |_, p, n| {
-                deepest = deepest.max(range.visit(p, n, spacing));
+        let found = range.visit_all(&facets, |range, &facet| {
+            let mut found = Vec::new();
+            of_facet(twin, facet, (self.radius, spacing), &mut |facet, p, n| {
+                found.extend(range.look((facet, p, n), spacing));
             });
-            deepest
+            found
         });
-        on_vertices(twin, &mut |facet, p, n| {
-            let deep = &mut deepest[facet as usize];
-            *deep = deep.max(range.visit(p, n, spacing));
-        });
+        let mut deep: Vec<Deep> = found.into_iter().flatten().collect();
+        on_vertices(twin, &mut |facet, p, n| deep.extend(range.look((facet, p, n), spacing)));
         if range.own.is_some() {
             // In a dent more may be found than was.
             let least = range.above.max(range.below) - CLOSE;
-            let close: Vec<u32> =
-                facets.into_iter().filter(|&facet| deepest[facet as usize] > least).collect();
-            range.visit_all(&close, |range, facet| {
-                let n = twin.normal(facet);
-                let mut deepest: f64 = 0.0;
-                on_facet(twin.corners(facet), spacing / CLOSER, |p| {
-                    deepest = deepest.max(range.visit(p, &n, 0.0))
+            deep.retain(|place| place.depth > least);
+            range.visit_all(&deep, |range, place| {
+                round_place(twin, (place.facet, &place.p), (spacing, spacing / CLOSER), &mut |p, n| {
+                    range.visit(p, n, 0.0);
                 });
-                deepest
             });
         }
         range.is_within().then_some((range.above, range.below))
     }
+}
+
+/// A place of a ball on a facet, and how large gap or depth are there (m).
+struct Deep {
+    facet: u32,
+    p: Vec3,
+    depth: f64,
 }
 
 /// What a ball feels at the places looked at so far.
@@ -119,11 +120,16 @@ impl<'t> Range<'t> {
         f64::max(self.above, self.below) <= self.most
     }
 
-    /// Visits facets, by two threads; what is returned of each. The largest of all is the same in any order.
-    fn visit_all(&mut self, facets: &[u32], visit: impl Fn(&mut Self, u32) -> f64 + Sync) -> Vec<f64> {
-        let (some, others) = facets.split_at(facets.len() / 2);
-        let visit_part = |range: &mut Self, part: &[u32]| -> Vec<f64> {
-            part.iter().map(|&facet| visit(range, facet)).collect()
+    /// Visits facets or places, by two threads; what is returned of each. The largest of all is the same in
+    /// any order.
+    fn visit_all<P: Sync, T: Send>(
+        &mut self,
+        places: &[P],
+        visit: impl Fn(&mut Self, &P) -> T + Sync,
+    ) -> Vec<T> {
+        let (some, others) = places.split_at(places.len() / 2);
+        let visit_part = |range: &mut Self, part: &[P]| -> Vec<T> {
+            part.iter().map(|place| visit(range, place)).collect()
         };
         let mut other = self.clone();
         let (mut found, more) = std::thread::scope(|scope| {
@@ -134,6 +140,12 @@ impl<'t> Range<'t> {
         found.extend(more);
         (self.above, self.below) = (self.above.max(other.above), self.below.max(other.below));
         found
+    }
+
+    /// [`Self::visit`]; the place if it is worth a closer look.
+    fn look(&mut self, (facet, p, n): (u32, &Vec3, &Vec3), cell: f64) -> Option<Deep> {
+        let depth = self.visit(p, n, cell);
+        (depth > 0.0).then_some(Deep { facet, p: *p, depth })
     }
 
     /// Looks at a place; how large gap or depth are there (m), or 0 where no place within `cell` (m) can tell
