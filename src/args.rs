@@ -39,6 +39,7 @@ pub enum Command {
     Roadmap(crate::roadmap::RoadmapArgs),
     Atlas(crate::atlas::AtlasArgs),
     Suite(crate::suite::SuiteArgs),
+    Gallery(crate::gallery::GalleryArgs),
     Replay(crate::replay::ReplayArgs),
     Hand(crate::hand::HandArgs),
     Object(crate::object::ObjectArgs),
@@ -94,7 +95,7 @@ regrasp plan cubic --use stability-test=socp --set graph-strategy.end=0.8 --reje
 regrasp plan cubic --improve 20x -o plan.json\n  \
 regrasp plan cubic --roadmap cube.roadmap --goals goals.toml -o plans")]
 pub struct PlanArgs {
-    /// A scenario file, or the name of a built-in scenario.
+    /// A scenario file in TOML or JSON, the name of a built-in scenario, or `-` for standard input.
     pub scenario: String,
     /// Seed of all random choices: the same seed gives the same plan, on any number of threads.
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true,

@@ -10,6 +10,7 @@ mod vary;
 
 pub use args::CompareArgs;
 
+use crate::memory;
 use crate::serve::{Live, Server};
 use crate::terminal::remark;
 use crate::watch::Watch;
@@ -75,6 +76,7 @@ fn make(args: &CompareArgs, mut prepared: compare::Prepared<'_>) -> Result<(), F
     let execution = Execution {
         threads,
         clock: &watch,
+        memory: Some(&memory::Counted),
         interrupt: &watch,
         progress: &bar,
         audit: args.audit,

@@ -1,9 +1,24 @@
 //! The files that a command reads, and those that these name: none of them may be written over.
 
+use crate::{Failure, outputs};
 use regrasp::formats::named_files;
+use regrasp::host::Registry;
+use regrasp::run::scenario::{self, Scenario};
 use serde_json::Value;
 use std::fs;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+
+/// Loads the built-in scenario of this name, or else the file; `-` is standard input, which is read once.
+pub fn scenario(name: &str, registry: &Registry) -> Result<Scenario, Failure> {
+    if !outputs::is_standard(Path::new(name)) {
+        return scenario::load(name, registry).map_err(Failure::refused);
+    }
+    let mut text = String::new();
+    let read = io::stdin().take(LARGEST).read_to_string(&mut text);
+    read.map_err(|error| Failure::bad_input(format!("cannot read standard input: {error}")))?;
+    scenario::from_text("standard input", &text, Path::new(""), registry).map_err(Failure::refused)
+}
 
 /// Larger files (bytes) are no scenario and no hand file.
 const LARGEST: u64 = 64 << 20;

@@ -10,12 +10,14 @@ mod completions;
 mod doctor;
 mod export;
 mod failure;
+mod gallery;
 mod goals;
 mod grasps;
 mod hand;
 mod holds;
 mod inputs;
 mod man;
+mod memory;
 mod new;
 mod new_plugin;
 mod numbers;
@@ -70,6 +72,7 @@ fn main() -> ExitCode {
         Command::Roadmap(args) => roadmap::run(args),
         Command::Atlas(args) => atlas::run(args),
         Command::Suite(args) => suite::run(args),
+        Command::Gallery(args) => gallery::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Hand(args) => hand::run(args),
         Command::Object(args) => object::run(args),

@@ -112,7 +112,7 @@ impl NewCrate {
         let package = format!("{name}-{}", role.name());
         let library = format!("{DLL_PREFIX}{}_dynamic{DLL_SUFFIX}", package.replace('-', "_"));
         let quoted = |name: &str| {
-            let path = framework.join("framework").join(name);
+            let path = framework.join(name);
             let text = path.to_str().ok_or_else(|| {
                 Failure::bad_input(format!(
                     "`{}` is not UTF-8 and cannot stand in a Cargo.toml",
@@ -131,16 +131,18 @@ impl NewCrate {
             ("crate", package.replace('-', "_")),
             ("package", package.clone()),
             ("library", Path::new("target").join("release").join(library).display().to_string()),
+            ("test", format!("{:<28}", test_command())),
             ("framework", framework.display().to_string()),
-            ("abi", quoted("abi")?),
-            ("api", quoted("api")?),
-            ("conformance", quoted("conformance")?),
+            ("build", quoted("target")?),
+            ("abi", quoted("framework/abi")?),
+            ("api", quoted("framework/api")?),
+            ("conformance", quoted("framework/conformance")?),
         ];
         Ok(Self { source, words, is_surface: role == Role::Surface })
     }
 
     /// The files by their paths in the crate.
-    fn files(&self) -> [(&'static str, String); 8] {
+    fn files(&self) -> [(&'static str, String); 9] {
         let conformance = match self.is_surface {
             true => text::CONFORMANCE_OF_SURFACE,
             false => text::CONFORMANCE,
@@ -149,10 +151,13 @@ impl NewCrate {
             ("Cargo.toml", self.fill(text::MANIFEST)),
             ("Cargo.lock", LOCK.to_owned()),
             (".gitignore", "/target\n".to_owned()),
+            (".cargo/config.toml", self.fill(text::CONFIG)),
             ("README.md", self.fill(text::README)),
             (
                 "src/lib.rs",
-                self.source.replace(TEMPLATE_NAME, &self.fill("/{{name}}\"")) + text::REGISTRATION,
+                self.source.replace(TEMPLATE_NAME, &self.fill("/{{name}}\""))
+                    + text::REGISTRATION
+                    + text::TESTS,
             ),
             ("tests/conformance.rs", self.fill(conformance)),
             ("dynamic/Cargo.toml", self.fill(text::DYNAMIC_MANIFEST)),
@@ -169,7 +174,7 @@ impl NewCrate {
         let steps = "\
 `{{folder}}` has the plugin `{{id}}`; it works as it is:
     cd {{folder}}
-    cargo test                  # the laws of its role
+    {{test}}# the laws of its role
     cargo build --release --workspace    # {{library}}
     regrasp plan sphere --load {{library}} --use {{slot}}={{name}}
     regrasp compare sphere --load {{library}} --vary {{slot}}={{default}},{{name}} -o study
@@ -177,6 +182,11 @@ The plugin is in `src/lib.rs`: make it yours, and do the same again.
 ";
         self.fill(&steps.replace("{{folder}}", &folder.display().to_string()))
     }
+}
+
+/// How the tests are run so that they use what was compiled for this program: in its own profile.
+fn test_command() -> &'static str {
+    if cfg!(debug_assertions) { "cargo test" } else { "cargo test --release" }
 }
 
 /// The name, without its role, of the plugin that fills a slot by default.

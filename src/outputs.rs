@@ -36,6 +36,8 @@ pub enum Kind {
     Atlas,
     /// The results of a protocol.
     Suite,
+    /// A picture or the list of a gallery.
+    Gallery,
     /// The result of a replay.
     Replay,
     /// A hand file.
@@ -59,6 +61,7 @@ impl Kind {
             Kind::Roadmap => "roadmap",
             Kind::Atlas => "file of an atlas",
             Kind::Suite => "results of a protocol",
+            Kind::Gallery => "file of a gallery",
             Kind::Replay => "file of a replay",
             Kind::Hand => "hand file",
             Kind::Scenario => "scenario",
@@ -89,6 +92,7 @@ impl Kind {
                 "hand,shape,size_mm,friction,mass_kg,",
             ],
             Kind::Suite => &["\"regrasp-suite\"", "\"regrasp-suite-part\"", "<!-- regrasp-suite -->"],
+            Kind::Gallery => &["<!-- regrasp-gallery -->"],
             Kind::Replay => &["\"regrasp-replay\""],
             Kind::Hand => &[HAND_MARK],
             Kind::Scenario => &[SCENARIO_MARK],

@@ -96,12 +96,13 @@ fn graph_edge(edge: &EdgeRecord) -> GraphEdge {
     }
 }
 
-/// A place in a plan in words, fingers and obstacles by the names that the problem gives them.
+/// A place in a plan in words, fingers and obstacles by the names that the problem gives them. Goals, segments,
+/// states and joints are counted from 1.
 pub fn place_text(place: &Place, problem: &Problem) -> String {
-    let part = |name: &str, index: Option<usize>| index.map(|index| format!("{name} {index}"));
+    // Everything is counted from 1 where a person reads of it; indices of data begin with 0.
+    let part = |name: &str, index: Option<usize>| index.map(|index| format!("{name} {}", index + 1));
     let parts = [
-        // Goals are counted from 1 wherever a person reads of them.
-        part("goal", place.goal.map(|goal| goal + 1)),
+        part("goal", place.goal),
         part("segment", place.segment),
         part("state", place.state),
         place.time.map(|time| format!("{time:.2} s")),
@@ -115,5 +116,5 @@ pub fn place_text(place: &Place, problem: &Problem) -> String {
 
 fn finger_name(finger: usize, problem: &Problem) -> String {
     let named = problem.hand.finger.get(finger).map(|finger| format!("finger `{}`", finger.name));
-    named.unwrap_or_else(|| format!("finger {finger}"))
+    named.unwrap_or_else(|| format!("finger {}", finger + 1))
 }

@@ -11,14 +11,14 @@ use crate::{Failure, goals, inputs, overrides, plugins, report, say, say_json, v
 use regrasp::api::{Level, Tally};
 use regrasp::plan::{Plan, StoppedBy};
 use regrasp::planner::Status;
-use regrasp::run::{Depth, Improved, Run, RunOptions, Setup, scenario};
+use regrasp::run::{Depth, Improved, Run, RunOptions, Setup};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     check_outputs(args)?;
     let registry = plugins::registry(&args.choices.libraries)?;
-    let mut scenario = scenario::load(&args.scenario, &registry).map_err(Failure::refused)?;
+    let mut scenario = inputs::scenario(&args.scenario, &registry)?;
     remark(&scenario.remarks);
     overrides::apply(&mut scenario, args)?;
     if let Some(name) = &args.choices.preset {

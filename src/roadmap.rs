@@ -16,7 +16,6 @@ use regrasp::plan::StoppedBy;
 use regrasp::planner::roadmap::{Grown, Roadmap, RoadmapGraph, grow, pairs};
 use regrasp::planner::{Clock, Silent};
 use regrasp::roadmap::{Identity, RoadmapError, Standing, judge, load, save};
-use regrasp::run::scenario;
 use regrasp::run::{RunOptions, Setup, Stop};
 use report::Report;
 use std::fs;
@@ -32,7 +31,7 @@ pub fn run(args: &RoadmapArgs) -> Result<(), Failure> {
         return Err(Failure::bad_input("`-o -`: a roadmap needs a file; name one"));
     }
     let registry = plugins::registry(&args.choices.libraries)?;
-    let mut scenario = scenario::load(&args.scenario, &registry).map_err(Failure::refused)?;
+    let mut scenario = inputs::scenario(&args.scenario, &registry)?;
     overrides::apply_choices(&mut scenario.choices, &args.choices)?;
     let setup = Setup::new(&scenario, &scenario.choices, &registry).map_err(Failure::refused)?;
     let identity = Identity::of(&setup, args.seed);

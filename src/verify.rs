@@ -77,7 +77,7 @@ mod tests {
         let registry = regrasp::host::Registry::linked().expect("the built-in plugins differ");
         let scenario = regrasp::run::scenario::load("sphere", &registry).expect("it is built in");
         let place = Place { segment: Some(2), finger: Some(1), ..Place::default() };
-        assert_eq!(place_text(&place, &scenario.problem), "segment 2, finger `north`");
+        assert_eq!(place_text(&place, &scenario.problem), "segment 3, finger `north`");
         assert_eq!(place_text(&Place::default(), &scenario.problem), "");
     }
 }

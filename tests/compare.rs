@@ -32,6 +32,7 @@ fn with(clock: &(dyn Clock + Sync)) -> Execution<'_> {
     Execution {
         threads: 1,
         clock,
+        memory: None,
         interrupt: &Uninterrupted,
         progress: &Silent,
         audit: false,

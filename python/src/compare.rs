@@ -124,6 +124,8 @@ pub fn run_study(
             let with = Execution {
                 threads: request.threads,
                 clock,
+                // Python's own memory is not the planner's.
+                memory: None,
                 interrupt,
                 progress: &progress,
                 audit: false,

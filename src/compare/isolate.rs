@@ -1,10 +1,11 @@
 //! A run of a study in a process of its own.
 
 use super::CompareArgs;
+use crate::memory::Counted;
 use crate::watch::Watch;
 use crate::{Failure, say};
 use regrasp::api::Interrupt;
-use regrasp::study::compare::{self, Isolate, Isolated, Prepared, RunKey};
+use regrasp::study::compare::{self, Isolate, Isolated, Means, Prepared, RunKey};
 use std::process::{Command, ExitStatus, Stdio};
 
 /// Starts this program again for one run, with the words that it was started with.
@@ -57,7 +58,8 @@ fn how(status: ExitStatus, said: &[u8]) -> String {
 pub fn make_one(args: &CompareArgs, prepared: &Prepared<'_>, key: RunKey) -> Result<(), Failure> {
     super::hush_runs();
     let watch = Watch::start(None);
-    let made = compare::make_run(prepared, key, &watch, &watch, args.audit);
+    let means = Means { clock: &watch, memory: Some(&Counted), interrupt: &watch, audit: args.audit };
+    let made = compare::make_run(prepared, key, means);
     let made =
         made.ok_or_else(|| Failure::interrupted("the run was interrupted, or is none of the study".into()))?;
     let line = serde_json::to_string(&made).map_err(Failure::bad_input)?;

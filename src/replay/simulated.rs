@@ -95,6 +95,8 @@ impl<'a> Told<'a> {
         let weak = (stage.margin <= 0.0).then(|| "no allowed forces hold the weight".to_owned());
         let end = outcome.failure.map(|failure| match failure.what {
             Happening::Stray => "dropped".to_owned(),
+            Happening::Slip(finger) => format!("{} slipped", self.finger(finger)),
+            Happening::Lift(finger) => format!("{} lost the object", self.finger(finger)),
             what => what.to_string(),
         });
         end.into_iter().chain(weak).chain(slips).chain(gaps).collect()
@@ -112,15 +114,18 @@ impl<'a> Told<'a> {
         let reason = if events.is_empty() { "it drifts".to_owned() } else { events.join(", ") };
         match self.report.failure() {
             Some((at, failure)) => format!(
-                "the object does not arrive: dropped in segment {at}, state {}, at {:.2} s; first off its \
-                 path in segment {index}: {reason}",
-                failure.state, failure.time
+                "the object does not arrive: dropped in segment {}, state {}, at {:.2} s; first off its \
+                 path in segment {}: {reason}",
+                at + 1,
+                failure.state + 1,
+                failure.time,
+                index + 1
             ),
             None => {
                 let end = self.report.stages.last().map(off).unwrap_or_default();
                 format!(
-                    "the object does not arrive: in the end {end}; first off its path in segment {index}: \
-                     {reason}"
+                    "the object does not arrive: in the end {end}; first off its path in segment {}: {reason}",
+                    index + 1
                 )
             }
         }
@@ -182,7 +187,7 @@ impl<'a> Told<'a> {
         let mm = |metres: f64| format!("{:.2} mm", metres * 1e3);
         let degrees = |angle: f64| format!("{:.2}°", angle.to_degrees());
         vec![
-            index.to_string(),
+            (index + 1).to_string(),
             kind,
             format!("{:.2} s", stage.begin),
             mm(outcome.distance),

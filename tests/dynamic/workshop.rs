@@ -52,6 +52,9 @@ fn lock() -> MutexGuard<'static, ()> {
 pub fn cargo(name: &str, arguments: &[&str]) -> Said {
     let mut command = Command::new(env!("CARGO"));
     command.args(arguments).arg("--offline").current_dir(root().join(name));
+    // What was compiled for the program serves the plugins, too, wherever that lies.
+    let built = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("it lies in the target folder");
+    command.env("CARGO_BUILD_BUILD_DIR", built);
     run(command.env("CARGO_TARGET_DIR", root().join("target")))
 }
 

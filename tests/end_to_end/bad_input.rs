@@ -154,9 +154,9 @@ fn starts_that_cannot_be() {
     refused(&far, &["start.grasp[0]", "`east`", "reach"]);
     refused(&grasp(["0.05, 0, 0", round[1], round[2], round[3]]), &["start.grasp[0]", "surface"]);
     let together = ["0.03, 0, 0", "0, 0.03, 0", "0.0001, 0.03, 0", "0, -0.03, 0"];
-    refused(&grasp(together), &["`start`", "the object and link 2 of finger `west` overlap"]);
+    refused(&grasp(together), &["`start`", "the object and link 3 of finger `west` overlap"]);
     let beside = ["0.03, 0, 0", "0.029, 0.0076, 0", "-0.03, 0, 0", "0, -0.03, 0"];
-    refused(&grasp(beside), &["`start`", "link 2 of finger `east`", "finger `north`", "overlap"]);
+    refused(&grasp(beside), &["`start`", "link 3 of finger `east`", "finger `north`", "overlap"]);
     let none = start("pose = { position = [0.0, 0.0, 0.085] }\ngrasp = [{}, {}, {}, {}]");
     refused(&none, &["`start.grasp`", "not stable", "no finger has a `contact`"]);
     let two = "grasp = [{ contact = [0.03, 0, 0] }, { contact = [0, 0.03, 0] }, {}, {}]";

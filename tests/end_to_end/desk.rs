@@ -1,8 +1,9 @@
 //! Running the real binary in a folder of its own.
 
 use serde_json::Value;
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
 /// An empty folder, and the program in it.
@@ -52,6 +53,22 @@ impl Desk {
             .output()
             .expect("the program was built for this test");
         Said::of(&output)
+    }
+
+    /// The same with this text on standard input.
+    pub fn run_on(&self, arguments: &str, input: &str) -> Said {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_regrasp"))
+            .args(arguments.split_whitespace())
+            .current_dir(self.folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program was built for this test");
+        let mut to = child.stdin.take().expect("it is piped");
+        to.write_all(input.as_bytes()).expect("the program reads");
+        drop(to);
+        Said::of(&child.wait_with_output().expect("the program ends"))
     }
 
     pub fn folder(&self) -> &Path {

@@ -81,3 +81,42 @@ fn a_command_that_answered_adds_no_second_object() {
     let one: Value = serde_json::from_str(&said.out).expect("one object");
     assert!(one.get("error").is_none());
 }
+
+#[test]
+fn a_wrong_hand_comes_with_its_line_and_a_missing_key_with_an_example() {
+    let desk = Desk::new();
+    desk.write("mine.toml", built_in("sphere", &[("builtin = \"four-finger\"", "builtin = \"shadow\"")]));
+    let wanted = [
+        ("code", "unknown-name".into()),
+        ("file", "mine.toml".into()),
+        ("line", line_of(&desk, "shadow").into()),
+        ("key", "hand.builtin".into()),
+        ("value", "shadow".into()),
+    ];
+    refused(&desk, "plan mine.toml --json", &wanted);
+    let text = built_in("sphere", &[]);
+    desk.write("mine.toml", &text[..text.find("[[goal]]").expect("it has a goal")]);
+    let remedy = "give `goal`, such as `[[goal]] pose = { position = [0.0, 0.0, 0.085], \
+                  axis = [0.0, 0.0, 1.0], angle_deg = 90.0 }`";
+    refused(&desk, "plan mine.toml --json", &[("code", "missing-key".into()), ("remedy", remedy.into())]);
+    desk.run("plan mine.toml")
+        .assert_fails(2, &["`goal` is missing; for example", "[[goal]]", "--> mine.toml"]);
+}
+
+/// The line of `mine.toml` that has this word, counted from 1.
+fn line_of(desk: &Desk, word: &str) -> usize {
+    desk.read("mine.toml").lines().position(|line| line.contains(word)).expect("it is there") + 1
+}
+
+#[test]
+fn a_scenario_may_come_from_standard_input() {
+    let desk = Desk::new();
+    let said = desk.run_on("plan - --json", &built_in("cube-free", &[]));
+    assert_eq!((said.code, said.json()["scenario"].as_str()), (0, Some("cube-free")), "{}", said.err);
+    let table: toml::Table = toml::from_str(&built_in("cube-free", &[])).expect("it is TOML");
+    let said = desk.run_on("plan - --json", &serde_json::to_string(&table).expect("it can be JSON"));
+    assert_eq!((said.code, said.json()["scenario"].as_str()), (0, Some("cube-free")), "{}", said.err);
+    let said = desk.run_on("plan - --json", &built_in("cube-free", &[("friction", "fricton")]));
+    said.assert_fails(2, &["--> standard input:"]);
+    assert_eq!(error(&said)["file"], "standard input");
+}

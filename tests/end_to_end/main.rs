@@ -6,6 +6,7 @@ mod better;
 mod command_line;
 mod compare;
 mod desk;
+mod gallery;
 mod golden;
 mod grasps;
 mod hold;

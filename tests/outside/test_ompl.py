@@ -50,6 +50,7 @@ def test_every_run_is_there_with_its_values(database, runs):  # noqa: F811
         assert row["solved"] == is_solved
         assert row["status"] == SOLVED if is_solved else row["status"] >= NO_PLAN
         assert row["time"] == float(run["planning_s"])
+        assert row["memory"] == pytest.approx(float(run["memory_bytes"]) / 1e6)
         assert row["graph_states"] == int(run["graph_nodes"])
         assert row["regrasps"] == int(run["regrasps"])
         assert row["closure_margin"] == float(run["margin"])

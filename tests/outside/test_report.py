@@ -40,7 +40,7 @@ def test_every_chart_shows_every_variant(report, keep_picture):
     # Three pairs with the first, two effects of factors and their interaction, each in every measure.
     assert page.locator(".matrix tbody tr").count() == 2 * (VARIANTS - 1 + 2 + 1)
     measures = texts(page, ".card:first-of-type .matrix thead th")[1:]
-    assert {"solved", "planning", "verification", "regrasps", "motion", "margin", "clearance"} <= set(measures)
+    assert {"solved", "planning", "verification", "memory", "regrasps", "motion", "margin", "clearance"} <= set(measures)
     assert page.locator(".winners tbody td").count() == 2 * VARIANTS
     assert page.locator(".winners td.best").count() == 2
     assert page.locator(".strip svg").count() == 2

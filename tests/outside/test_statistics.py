@@ -34,6 +34,7 @@ def random_runs(lines, generator):
     spread = generator.choice([0.02, 0.3, 1.0])
     for run in lines:
         run["times"]["planning_s"] = math.exp(effect[run["variant"]] + hard[run["seed"]] + spread * generator.gauss(0, 1))
+        run["times"]["memory_bytes"] = round(2e6 * math.exp(0.1 * generator.gauss(0, 1)))
         run["motion"]["regrasps"] = generator.randrange(2 + names.index(run["variant"]))
         run["certified"]["margin"] = 0.1 + 0.01 * generator.gauss(0, 1)
         if generator.random() < failing[run["variant"]]:
@@ -98,7 +99,12 @@ def value(run, measure, horizon):
         return min(run["times"]["planning_s"], horizon) if success else horizon
     if not success:
         return None
-    return {"regrasps": lambda: run["motion"]["regrasps"], "margin": lambda: run["certified"]["margin"]}[measure]()
+    found = {
+        "regrasps": lambda: run["motion"]["regrasps"],
+        "margin": lambda: run["certified"]["margin"],
+        "memory_bytes": lambda: run["times"]["memory_bytes"],
+    }
+    return found[measure]()
 
 
 def weights(row):
@@ -166,13 +172,13 @@ def test_every_figure_is_that_of_scipy(regrasp, base, tmp_path, number):
     runs = random_runs(lines, random.Random(number))
     (folder / "runs.jsonl").write_text("".join(json.dumps(run) + "\n" for run in runs))
     pairs = ["baseline", "all"][number % 2]
-    words = ["--pairs", pairs, "--measures", "solved,planning,regrasps,margin"]
+    words = ["--pairs", pairs, "--measures", "solved,planning,memory,regrasps,margin"]
     regrasp("compare", "sphere", *WORDS, *words, "-o", folder)
     by_key = {(run["variant"], run["seed"]): run for run in runs}
     horizon = max(run["times"]["planning_s"] for run in runs)
     with open(folder / "comparisons.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert len(rows) == 4 * ({"baseline": 3, "all": 6}[pairs] + 3)
+    assert len(rows) == 5 * ({"baseline": 3, "all": 6}[pairs] + 3)
     for row in rows:
         check_row(row, by_key, horizon)
     # The correction is over those that could show anything: six seeds on which the two differ.

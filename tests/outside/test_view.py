@@ -290,7 +290,7 @@ def test_the_graph_has_its_tab(folder, visit, keep_picture):
     assert drawn.count() > 0
     before = page.evaluate("regrasp.app.actors[0].body.position.toArray()")
     nodes.nth(2).dispatch_event("click")
-    assert "Grasp 2" in page.locator(".node-details").inner_text()
+    assert "Grasp 3" in page.locator(".node-details").inner_text()
     assert page.evaluate("regrasp.app.actors[0].body.position.toArray()") != before or len(set(map(str, graph["states"]["object"]))) < 8
     keep_picture(page, "view-graph.png")
     page.keyboard.press("Home")
@@ -354,7 +354,7 @@ def test_bad_plans_are_refused_with_the_reason(folder, plan, tmp_path):
 
     damaged = copy.deepcopy(plan)
     damaged["segments"][1]["states"][3]["joints"][0].pop()
-    assert "segment 1, state 3" in view(json.dumps(damaged))
+    assert "segment 2, state 4" in view(json.dumps(damaged))
     assert "bad.json" in view("{")
     assert "is an input" in view(json.dumps(plan), "-o", "bad.json")
     assert "none" in view(json.dumps(plan), "-o", "none/page.html")

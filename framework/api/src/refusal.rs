@@ -103,7 +103,13 @@ impl Refuse for Fault {
     fn refusal(&self) -> Refusal {
         match self {
             Self::UnknownKey { near, .. } => Refusal::new("unknown-key", self).remedy(did_you_mean(near)),
-            Self::Missing { key } => Refusal::new("missing-key", self).remedy(format!("give `{key}`")),
+            Self::Missing { key, example } => {
+                let such =
+                    example.as_ref().map(|example| format!(", such as `{}`", example.replace('\n', " ")));
+                let message = format!("the key `{key}` is missing");
+                Refusal::new("missing-key", &message)
+                    .remedy(format!("give `{key}`{}", such.unwrap_or_default()))
+            }
             Self::Type { expected, found } => {
                 Refusal::new("wrong-type", self).value(found).remedy(format!("give {expected}"))
             }

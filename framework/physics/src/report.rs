@@ -35,8 +35,8 @@ impl fmt::Display for Happening {
         match self {
             Self::NoGrip => write!(f, "no forces within cones and efforts hold the object"),
             Self::Stray => write!(f, "the object strayed"),
-            Self::Slip(finger) => write!(f, "finger {} slipped", finger.0),
-            Self::Lift(finger) => write!(f, "finger {} lost the object", finger.0),
+            Self::Slip(finger) => write!(f, "finger {} slipped", finger.0 + 1),
+            Self::Lift(finger) => write!(f, "finger {} lost the object", finger.0 + 1),
         }
     }
 }

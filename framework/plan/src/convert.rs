@@ -41,7 +41,7 @@ pub enum StateError {
 #[non_exhaustive]
 pub enum ConvertError {
     /// The motion has no times yet.
-    #[error("segment {segment} has {states} states but {times} times; assign times first")]
+    #[error("segment {} has {states} states but {times} times; assign times first", .segment + 1)]
     NotTimed {
         /// The segment.
         segment: usize,
@@ -51,7 +51,7 @@ pub enum ConvertError {
         times: usize,
     },
     /// A state does not have the hand's form.
-    #[error("segment {segment}, state {state}: {error}")]
+    #[error("segment {}, state {}: {error}", .segment + 1, .state + 1)]
     Form {
         /// The segment.
         segment: usize,
@@ -62,7 +62,8 @@ pub enum ConvertError {
     },
     /// A regrasp without its finger, or a transfer with one.
     #[error(
-        "segment {segment}: a regrasp names the one of the hand's fingers that moves, a transfer names none"
+        "segment {}: a regrasp names the one of the hand's fingers that moves, a transfer names none",
+        .segment + 1
     )]
     Finger {
         /// The segment.

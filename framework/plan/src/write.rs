@@ -135,7 +135,7 @@ fn not_finite(plan: &Plan) -> Option<String> {
     }
     for (s, segment) in plan.segments.iter().enumerate() {
         if let Some(k) = segment.states.iter().position(|state| !is_finite(state)) {
-            return Some(format!("a value in segment {s}, state {k},"));
+            return Some(format!("a value in segment {}, state {},", s + 1, k + 1));
         }
     }
     None

@@ -108,8 +108,8 @@ pub(crate) fn body(body: &regrasp_api::Body) -> String {
         Body::Palm => "the palm".into(),
         Body::Object => "the object".into(),
         Body::Obstacle(index) => format!("`obstacle[{index}]`"),
-        Body::Link(finger, link) => format!("link {link} of finger {}", finger.0),
-        Body::Fingertip(finger) => format!("the tip of finger {}", finger.0),
+        Body::Link(finger, link) => format!("link {} of finger {}", link + 1, finger.0 + 1),
+        Body::Fingertip(finger) => format!("the tip of finger {}", finger.0 + 1),
     }
 }
 

@@ -1,9 +1,8 @@
 //! What one run shares: the plugins, the keyed random streams, the threads.
 
-use crate::share::lent;
 use regrasp_api::{
     CallError, ClosedChainSampler, Context, GraphStrategy, Interrupt, LocalPlanner, Plugins, Random, Tally,
-    Task,
+    Task, report_fault, take_fault, unless_fault,
 };
 
 /// The plugins that drive the search; contact model, stability test and surface are in the [`Task`].
@@ -149,12 +148,23 @@ fn counted<T>(
     Counted { result, tally: work.context.tally }
 }
 
+/// The result of a call on a thread that may have been lent to it while it waits for parts of another call.
+///
+/// A plugin that panicked where it could not return an error makes the result worthless: then it is that
+/// panic. What the other call left on the thread stays there.
+pub(crate) fn lent<T>(call: impl FnOnce() -> Result<T, CallError>) -> Result<T, CallError> {
+    let lender = take_fault();
+    let result = unless_fault(call());
+    lender.into_iter().for_each(report_fault);
+    result
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use regrasp_api::{
         Action, CallError::Interrupted, Configuration, Contact, FingerSet, GraphView, Path, PerFinger, Pose,
-        PoseRequest, Reached, Target, Uninterrupted, report_fault, take_fault,
+        PoseRequest, Reached, Target, Uninterrupted,
     };
     use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -1,9 +1,9 @@
 //! How calls are shared among threads: the sequential order defines the result, and what is computed ahead of
 //! it is thrown away where nobody asks for it.
 
-use crate::session::{Counted, Session, Work};
+use crate::session::{Counted, Session, Work, lent};
 use rayon::prelude::*;
-use regrasp_api::{CallError, Interrupt, report_fault, take_fault, unless_fault};
+use regrasp_api::{CallError, Interrupt};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -127,15 +127,4 @@ impl Work<'_> {
         };
         done.into_iter().map(take).collect()
     }
-}
-
-/// The result of a call on a thread that may have been lent to it while it waits for parts of another call.
-///
-/// A plugin that panicked where it could not return an error makes the result worthless: then it is that
-/// panic. What the other call left on the thread stays there.
-pub(crate) fn lent<T>(call: impl FnOnce() -> Result<T, CallError>) -> Result<T, CallError> {
-    let lender = take_fault();
-    let result = unless_fault(call());
-    lender.into_iter().for_each(report_fault);
-    result
 }

@@ -168,7 +168,7 @@ export class GraphTab {
     label(node) {
         const holding = this.app.motion.hand.fingers.filter((_, f) => this.states.contact(node, f)).map((finger) => finger.name);
         const end = this.graph.ends[node];
-        return `Grasp ${node}${end ? ` (${end})` : ""}: ${holding.join(", ")}`;
+        return `Grasp ${node + 1}${end ? ` (${end})` : ""}: ${holding.join(", ")}`;
     }
 
     /** Shows a node's grasp in 3-D for as long as nothing else is chosen. */
@@ -187,7 +187,7 @@ export class GraphTab {
     showNode(node) {
         this.shown = true;
         this.app.pose(this.states.snapshot(node));
-        this.app.title(`Grasp ${node} of the graph`, this.graph.ends[node] ?? "");
+        this.app.title(`Grasp ${node + 1} of the graph`, this.graph.ends[node] ?? "");
         this.describe(node);
     }
 
@@ -200,7 +200,7 @@ export class GraphTab {
         const counts = FATES.map(([fate, name]) => [own.filter((edge) => edge.fate === fate).length, name]).filter(([n]) => n);
         const edges = counts.map(([n, name]) => `${n} ${name}`).join(", ") || "none";
         const turned = (angleBetween(this.states.object(0).q, this.states.object(node).q) * 180) / Math.PI;
-        this.details.textContent = `${this.label(node)}; component ${this.graph.components[node]}, in GS_n alone ${this.graph.grasp_components[node]}; object ${turned.toFixed(0)}° from grasp 0; edges: ${edges}.`;
+        this.details.textContent = `${this.label(node)}; component ${this.graph.components[node] + 1}, in GS_n alone ${this.graph.grasp_components[node] + 1}; object ${turned.toFixed(0)}° from grasp 1; edges: ${edges}.`;
     }
 
     /** Goes back to where the play head is. */

@@ -170,7 +170,7 @@ class App {
 
     caption(snapshot) {
         const segment = this.motion.segments[snapshot.segment];
-        const title = `Segment ${segment.index} · ${segmentTitle(this.motion, segment)}`;
+        const title = `Segment ${segment.index + 1} · ${segmentTitle(this.motion, segment)}`;
         id("clock").textContent = `${snapshot.time.toFixed(2)} / ${this.player.end.toFixed(2)} s`;
         if (this.captioned === segment.index) return;
         this.captioned = segment.index;

@@ -40,7 +40,7 @@ export class SegmentList {
                 element("strong", { text: segmentTitle(motion, segment) }),
                 element("small", { text: segmentDetail(motion, segment) }),
             );
-            const number = element("span", { class: "number", text: segment.index });
+            const number = element("span", { class: "number", text: segment.index + 1 });
             const go = () => player.seek(segment.start);
             const button = element("button", { type: "button", class: `segment ${segment.kind}`, onclick: go }, number, mark, words);
             list.append(element("li", {}, button));

@@ -20,8 +20,13 @@ pub fn module(role: Role) -> (&'static str, Slot) {
 /// The template itself registers nothing: the program links it for its texts.
 pub const REGISTRATION: &str = "regrasp_api::inventory::submit! { ENTRY }\n";
 
+/// The first test of such a crate, beside its code.
+pub const TESTS: &str = include_str!("../crate/tests.rs.in");
+
 /// The crate's `Cargo.toml`.
 pub const MANIFEST: &str = include_str!("../crate/Cargo.toml.in");
+/// Its `.cargo/config.toml`.
+pub const CONFIG: &str = include_str!("../crate/config.toml.in");
 /// Its `README.md`.
 pub const README: &str = include_str!("../crate/README.md.in");
 /// Its `tests/conformance.rs`.

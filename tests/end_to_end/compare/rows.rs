@@ -133,3 +133,41 @@ fn what_a_hand_is_too_poor_for_is_refused_or_left_out() {
     let study = "compare sphere --vary contact-model=frictionless --skip-unsupported -o none";
     desk.run(study).assert_fails(2, &["nothing to run", "fingers"]);
 }
+
+#[test]
+fn memory_is_measured_and_again_the_same_on_one_thread() {
+    let desk = Desk::new();
+    for folder in ["once", "again"] {
+        let said = desk
+            .run(&format!("compare sphere --vary sampler=rlg,projection --seeds 3 --threads 1 -o {folder}"));
+        assert_eq!(said.code, 0, "{}", said.err);
+    }
+    let bytes = |folder: &str| -> Vec<u64> {
+        rows(&desk, folder).iter().map(|row| row["memory_bytes"].parse().expect("it was measured")).collect()
+    };
+    let once = bytes("once");
+    assert_eq!(once, bytes("again"));
+    // Hundreds of states with their contacts take more than the first, and no plan of a ball the other.
+    assert!(once.iter().all(|bytes| (100_000..1_000_000_000).contains(bytes)), "{once:?}");
+    assert!(desk.read("once/comparisons.csv").contains("memory_bytes"));
+    assert!(
+        desk.read("once/summary.md").contains("| MB |") || desk.read("once/summary.md").contains(" MB |")
+    );
+}
+
+#[test]
+fn studies_of_earlier_programs_which_counted_no_memory_are_read() {
+    let desk = Desk::new();
+    assert_eq!(desk.run("compare sphere --seeds 2 -o old").code, 0);
+    let text = desk.read("old/runs.jsonl");
+    let without = |line: &str| {
+        let mut run: Value = serde_json::from_str(line).expect("a line is a run");
+        let times = run["times"].as_object_mut().expect("a table");
+        assert!(times.remove("memory_bytes").is_some(), "{line}");
+        format!("{run}\n")
+    };
+    desk.write("old/runs.jsonl", text.lines().map(without).collect::<String>());
+    let said = desk.run("compare sphere --seeds 2 -o old");
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(rows(&desk, "old").iter().all(|row| row["memory_bytes"].is_empty()));
+}

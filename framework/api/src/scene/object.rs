@@ -37,13 +37,14 @@ pub struct ObjectDescription {
     #[serde(default = "default_object_name")]
     pub name: String,
     /// Its shape, in the object's frame O.
+    #[schemars(extend("x-example" = "shape = { kind = \"sphere\", radius = 0.03 }"))]
     pub shape: ObjectShape,
     /// Mass (kg), uniformly spread.
     #[serde(default = "default_mass")]
     #[schemars(range(min = 1e-6, max = 1e3), extend("x-unit" = "kg"))]
     pub mass: f64,
     /// Coefficient of friction between object and fingertips (no unit).
-    #[schemars(range(min = 0.0, max = 10.0), extend("x-unit" = "1"))]
+    #[schemars(range(min = 0.0, max = 10.0), extend("x-unit" = "1", "x-example" = "friction = 0.8"))]
     pub friction: f64,
     /// What fingertips touch: `"auto"`, `"exact"` or `{ tolerance = 3e-4 }` (m). Default `"auto"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]

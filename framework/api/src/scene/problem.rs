@@ -169,11 +169,12 @@ impl Problem {
         (lower - margin, upper + margin)
     }
 
-    /// A body in words, with the name that the problem gives it; by its number where it has none.
+    /// A body in words, with the name that the problem gives it; by its number, counted from 1, where it has
+    /// none.
     pub fn name_of(&self, body: Body) -> String {
         let finger = |index: FingerIndex| match self.hand.finger.get(index.index()) {
             Some(finger) if !finger.name.is_empty() => format!("finger `{}`", finger.name),
-            _ => format!("finger {}", index.0),
+            _ => format!("finger {}", index.0 + 1),
         };
         match body {
             Body::Palm => "the palm".into(),
@@ -182,7 +183,7 @@ impl Problem {
                 Some(obstacle) if !obstacle.name.is_empty() => format!("obstacle `{}`", obstacle.name),
                 _ => format!("`obstacle[{index}]`"),
             },
-            Body::Link(index, link) => format!("link {link} of {}", finger(index)),
+            Body::Link(index, link) => format!("link {} of {}", link + 1, finger(index)),
             Body::Fingertip(index) => format!("the tip of {}", finger(index)),
         }
     }

@@ -81,10 +81,12 @@ pub enum Fault {
         known: Vec<String>,
     },
     /// A key is missing.
-    #[error("the key `{key}` is missing")]
+    #[error("the key `{key}` is missing{}", shown_example(.example.as_deref()))]
     Missing {
         /// The key.
         key: String,
+        /// What could stand there, as lines of a TOML file, where the schema says it.
+        example: Option<String>,
     },
     /// A value of the wrong type.
     #[error("{found} is not {expected}")]
@@ -112,6 +114,12 @@ pub enum Fault {
         /// The allowed range.
         range: Range,
     },
+}
+
+/// The lines of an example, set off from the sentence.
+fn shown_example(example: Option<&str>) -> String {
+    let lines = |example: &str| example.lines().map(|line| format!("\n    {line}")).collect::<String>();
+    example.map(|example| format!("; for example{}", lines(example))).unwrap_or_default()
 }
 
 fn suggestion(near: &[String], known: &[String]) -> String {

@@ -2,12 +2,14 @@
 
 mod departure;
 mod described;
+mod example;
 mod near;
 mod unit;
 mod walk;
 
 pub use departure::*;
 pub use described::{check_described, check_field};
+pub use example::*;
 pub use near::*;
 pub use unit::*;
 pub use walk::{check_schema, fill_defaults};

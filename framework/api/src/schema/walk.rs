@@ -5,7 +5,7 @@
 //! JSON Schema that `schemars` writes for plain structs, options, arrays and tagged enumerations; what it
 //! does not know it lets pass, for serde to judge.
 
-use crate::{Departure, Fault, KeyPath, Range, near, unit};
+use crate::{Departure, Fault, KeyPath, Range, example, near, unit};
 use serde_json::{Map, Value};
 
 /// Finds the first place, in the order of the keys, where `value` departs from `schema`.
@@ -89,7 +89,11 @@ impl<'a> Walk<'a> {
         }
         let required = schema.get("required").and_then(Value::as_array).into_iter().flatten();
         match required.filter_map(Value::as_str).find(|&key| !object.contains_key(key)) {
-            Some(key) => Err(depart(path, Fault::Missing { key: key.to_owned() })),
+            Some(key) => {
+                let property = properties.and_then(|properties| properties.get(key));
+                let example = property.and_then(|property| example(key, property));
+                Err(depart(path, Fault::Missing { key: key.to_owned(), example }))
+            }
             None => Ok(()),
         }
     }
@@ -154,7 +158,7 @@ impl<'a> Walk<'a> {
             return Err(depart(path, Fault::Type { expected: "a table".into(), found: shown(value) }));
         };
         let Some(kind) = object.get(tag) else {
-            return Err(depart(path, Fault::Missing { key: tag.to_owned() }));
+            return Err(depart(path, Fault::Missing { key: tag.to_owned(), example: None }));
         };
         let word = |schema: &Value| schema["properties"][tag].get("const").cloned();
         match alternatives.iter().find(|schema| word(schema).as_ref() == Some(kind)) {

@@ -29,13 +29,13 @@ pub fn chain_kept(chain: &Chain<'_>, q: &Configuration, holding: FingerSet) -> K
     })?;
     for (finger, joints) in q.joints.iter() {
         let fits = joints.len() == hand.finger(finger).joints.len() && hand.within_limits(finger, joints);
-        ensure("limits", fits, || format!("the joints of finger {} are {:.4?}", finger.0, &joints[..]))?;
+        ensure("limits", fits, || format!("the joints of `finger[{}]` are {:.4?}", finger.0, &joints[..]))?;
         let Some(contact) = &q.contacts[finger] else { continue };
         contact_on_surface(&chain.ground, contact)?;
         let center = q.contact_tip_center(finger, chain.ground.radius).unwrap_or(p);
         let gap = (hand.tip_center(finger, joints) - center).norm();
         ensure("closed", gap <= chain.closure, || {
-            format!("the tip of finger {} is {} off its contact", finger.0, length(gap))
+            format!("the tip of `finger[{}]` is {} off its contact", finger.0, length(gap))
         })?;
     }
     Ok(())

@@ -60,7 +60,7 @@ fn forces_balance(
     for ((contact, f), &m) in contacts.iter().zip(forces).zip(torsions) {
         let normal = -contact.n_O.dot(f);
         ensure(LAW, normal > 0.0 && inside(contact, f, m), || {
-            format!("the force of finger {} lies outside its cone", contact.finger.0)
+            format!("the force of `finger[{}]` lies outside its cone", contact.finger.0)
         })?;
         force += f;
         torque += ((contact.p_OC - center).cross(f) - contact.n_O * m) / length;

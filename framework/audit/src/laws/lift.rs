@@ -30,7 +30,7 @@ pub fn lift_kept(motion: &Motion<'_>) -> Kept {
     let highest = row.iter().map(|instant| instant.height).fold(f64::NEG_INFINITY, f64::max);
     let moves = states.len() > 1;
     ensure("regrasp-lifts", highest >= lowest - FALL || !(first && last && moves), || {
-        format!("finger {} rises by {}, at least {} is a lift", finger.0, length(highest), length(lowest))
+        format!("`finger[{}]` rises by {}, at least {} is a lift", finger.0, length(highest), length(lowest))
     })?;
     let enough = lowest.min(highest);
     let slide = motion.chain.task.tolerances;
@@ -74,12 +74,12 @@ fn rises(
     for instant in row {
         ensure("regrasp-lifts", highest - instant.height <= FALL, || {
             let fall = length(highest - instant.height);
-            format!("finger {} falls by {fall} before it is lifted", finger.0)
+            format!("`finger[{}]` falls by {fall} before it is lifted", finger.0)
         })?;
         touches &= instant.height <= closure;
         let slid = (instant.p_OF - contact.p_OF).norm();
         ensure("regrasp-lifts", !touches || slid <= slip, || {
-            format!("finger {} slides by {} while it touches", finger.0, length(slid))
+            format!("`finger[{}]` slides by {} while it touches", finger.0, length(slid))
         })?;
         highest = highest.max(instant.height);
         if instant.height >= enough {

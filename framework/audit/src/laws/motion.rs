@@ -107,7 +107,7 @@ pub fn states_kept(motion: &Motion<'_>, context: &mut Context<'_>) -> Kept {
     let inner = states.len().saturating_sub(1);
     for (i, q) in states.iter().enumerate() {
         let at = |fault: super::Broken| super::Broken {
-            what: format!("state {i} of {}: {}", inner + 1, fault.what),
+            what: format!("state {} of {}: {}", i + 1, inner + 1, fault.what),
             ..fault
         };
         match moving {
@@ -121,7 +121,7 @@ pub fn states_kept(motion: &Motion<'_>, context: &mut Context<'_>) -> Kept {
     }
     states.windows(2).enumerate().try_for_each(|(i, pair)| {
         let at = |fault: super::Broken| super::Broken {
-            what: format!("after state {i} of {}: {}", inner + 1, fault.what),
+            what: format!("after state {} of {}: {}", i + 1, inner + 1, fault.what),
             ..fault
         };
         step_kept(motion.chain.task, motion.to, &pair[0], &pair[1])
@@ -137,9 +137,9 @@ fn rests(motion: &Motion<'_>, q: &Configuration, finger: FingerIndex, end: bool)
     let still = q.X_HO == from.X_HO
         && q.joints.iter().all(|(other, joints)| other == finger || *joints == from.joints[other])
         && q.contacts.iter().all(|(other, contact)| other == finger || *contact == from.contacts[other]);
-    ensure("regrasp-others-rest", still, || format!("something else moves than finger {}", finger.0))?;
+    ensure("regrasp-others-rest", still, || format!("something else moves than `finger[{}]`", finger.0))?;
     ensure("regrasp-touches-at-ends", end || q.contacts[finger].is_none(), || {
-        format!("finger {} keeps a contact while it moves", finger.0)
+        format!("`finger[{}]` keeps a contact while it moves", finger.0)
     })?;
     chain_kept(&motion.chain, q, q.holding())
 }
@@ -227,7 +227,7 @@ fn between(motion: &Motion<'_>, a: &Configuration, b: &Configuration, moving: Op
         let p_OF = X_HO.inverse_transform_point(&hand.tip_center(finger, &joints).into()).coords;
         let gap = motion.chain.task.surface.project(&p_OF, None).distance - ground.radius;
         ensure("closed-between", gap.abs() <= allowed, || {
-            format!("half a step on the tip of finger {} is {} off the object", finger.0, length(gap))
+            format!("half a step on the tip of `finger[{}]` is {} off the object", finger.0, length(gap))
         })?;
     }
     Ok(())
@@ -253,7 +253,7 @@ fn no_slip(motion: &Motion<'_>) -> Kept {
             }
             let slip = net.norm();
             ensure("no-slip", slip <= allowed, || {
-                format!("finger {} slips by {}, {} is allowed", finger.0, length(slip), length(allowed))
+                format!("`finger[{}]` slips by {}, {} is allowed", finger.0, length(slip), length(allowed))
             })?;
         }
     }

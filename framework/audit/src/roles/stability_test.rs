@@ -144,7 +144,7 @@ impl StabilityTest for Audited<'_, dyn StabilityTest + '_> {
                 match found.iter().find(holds) {
                     Some(finger) => broken(
                         "liftable",
-                        format!("finger {} may be lifted, but the rest is not stable", finger.0),
+                        format!("`finger[{}]` may be lifted, but the rest is not stable", finger.0),
                     ),
                     None => Ok(()),
                 }
@@ -168,7 +168,7 @@ impl StabilityTest for Audited<'_, dyn StabilityTest + '_> {
                 let says = !rest.contacts().is_empty()
                     && plain(test, &rest, &mut context.twin()).is_none_or(Stability::is_stable);
                 ensure("liftable", !found || says, || {
-                    format!("says that the rest holds without finger {}, `test` says no", finger.0)
+                    format!("says that the rest holds without `finger[{}]`, `test` says no", finger.0)
                 })
             },
         )

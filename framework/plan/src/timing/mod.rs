@@ -55,7 +55,11 @@ impl TimingLimits {
 #[non_exhaustive]
 pub enum TimingError {
     /// A state does not belong to this hand, or holds a number that is not finite.
-    #[error("segment {segment}, state {state}: a pose or joint is not finite, or not of this hand")]
+    #[error(
+        "segment {}, state {}: a pose or joint is not finite, or not of this hand",
+        .segment + 1,
+        .state + 1
+    )]
     State {
         /// The segment.
         segment: usize,

@@ -122,7 +122,7 @@ fn a_failed_write_leaves_the_old_file() {
     let mut plan = example();
     plan.segments[1].states[2].joints[0][1] = f64::INFINITY;
     let error = write(&path, &plan).unwrap_err().to_string();
-    assert!(error.contains("segment 1, state 2"), "{error}");
+    assert!(error.contains("segment 2, state 3"), "{error}");
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
     let nowhere = folder.path().join("nowhere/plan.json");
     assert!(matches!(write(&nowhere, &plan), Err(WriteError::NotFinite { .. })));
@@ -178,7 +178,7 @@ fn what_version_2_adds_comes_back_exactly_and_its_numbers_are_finite() {
     let state = |plan: &mut Plan, change: &dyn Fn(&mut StateRecord)| change(&mut plan.segments[2].states[1]);
     let velocity = refused(&|p| state(p, &|s| s.velocities.as_mut().unwrap()[1][2] = f64::NAN));
     let force = refused(&|p| state(p, &|s| s.forces.as_mut().unwrap()[2] = Some([f64::INFINITY; 3])));
-    assert!([velocity, force].iter().all(|message| message.contains("segment 2, state 1")));
+    assert!([velocity, force].iter().all(|message| message.contains("segment 3, state 2")));
     let bound = |p: &mut Plan| p.object.as_mut().unwrap().contact_surface.as_mut().unwrap().bound = f64::NAN;
     assert!(refused(&bound).contains("contact surface"));
 }

@@ -8,6 +8,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+/// What a scenario without an object is told.
+const OBJECT: &str = "[object]\nfriction = 0.8\nshape = { kind = \"sphere\", radius = 0.03 }";
+/// What a scenario without a goal is told.
+const GOAL: &str =
+    "[[goal]]\npose = { position = [0.0, 0.0, 0.085], axis = [0.0, 0.0, 1.0], angle_deg = 90.0 }";
+
 /// A scenario file: a planning problem, where it comes from, and the plugins to solve it with. SI units;
 /// angles in degrees where a key ends with `_deg`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -26,8 +32,10 @@ pub struct ScenarioFile {
     #[serde(default)]
     pub paper: Option<PaperFigures>,
     /// The hand.
+    #[schemars(extend("x-example" = "[hand]\nbuiltin = \"four-finger\""))]
     pub hand: HandChoice,
     /// The object that the hand holds.
+    #[schemars(extend("x-example" = OBJECT))]
     pub object: ObjectDescription,
     /// Obstacles fixed to the hand's frame.
     #[serde(default)]
@@ -37,8 +45,10 @@ pub struct ScenarioFile {
     #[schemars(inner(range(min = -1e3, max = 1e3)), extend("x-unit" = "m/s²"))]
     pub gravity: [f64; 3],
     /// Where the object starts.
+    #[schemars(extend("x-example" = "[start]\npose = { position = [0.0, 0.0, 0.085] }"))]
     pub start: StartDescription,
     /// The goals, visited in turn.
+    #[schemars(extend("x-example" = GOAL))]
     pub goal: Vec<GoalDescription>,
     /// Where the object may be sampled; by default a box about start and goals, 15 mm wider on each side.
     #[serde(default)]

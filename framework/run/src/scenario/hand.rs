@@ -34,6 +34,10 @@ struct HandAlone {
 pub fn load_hand(text: &str, folder: &Path) -> Result<LoadedHand, ScenarioError> {
     let document = Document::parse("hand", text)?;
     let HandAlone { hand } = document.read()?;
+    // The text is nobody's file: a wrong name is told without a place in it.
+    if let Some(name) = hand.builtin.as_deref().filter(|name| find(HANDS, name).is_none()) {
+        return Err(unknown("hand", name, HANDS));
+    }
     load(&document, &hand, folder)
 }
 
@@ -52,7 +56,8 @@ pub(super) fn load(
     }
     match (&choice.builtin, &choice.file, choice.robot()) {
         (Some(name), None, None) => {
-            let built_in = find(HANDS, name).ok_or_else(|| unknown("hand", name, HANDS))?;
+            let built_in =
+                find(HANDS, name).ok_or_else(|| scenario.refused(&unknown("hand", name, HANDS)))?;
             described(Document::parse(built_in.name, built_in.text)?, Path::new(""))
         }
         (None, Some(file), None) => {

@@ -238,7 +238,19 @@ fn goals_that_coincide_are_refused() {
     assert_says(&refusal("angle_deg = 180.0", "angle_deg = 360.0"), &["coincides with the start"]);
     let text = find(SCENARIOS, "sphere").unwrap().text;
     let without = &text[..text.find("[[goal]]").unwrap()];
-    assert_says(&read_text(without).err().unwrap().to_string(), &["`goal` is missing"]);
+    let shown = "`goal` is missing; for example\n    [[goal]]\n    pose = ";
+    assert_says(&read_text(without).err().unwrap().to_string(), &[shown]);
+}
+
+#[test]
+fn the_examples_of_missing_keys_are_a_scenario() {
+    let schema = schemars::schema_for!(ScenarioFile).to_value();
+    let properties = schema["properties"].as_object().unwrap();
+    let required = schema["required"].as_array().unwrap().iter().map(|key| key.as_str().unwrap());
+    let lines = required.map(|key| regrasp_api::example(key, &properties[key]).expect(key));
+    let text = lines.collect::<Vec<_>>().join("\n");
+    let read = read_text(&text).unwrap();
+    assert_eq!((read.problem.goal.len(), read.problem.object.friction), (1, 0.8));
 }
 
 #[test]

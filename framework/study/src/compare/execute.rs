@@ -1,8 +1,8 @@
 //! The runs of a study on several threads, each run on one of its own.
 
 use super::begun::Begun;
-use super::machinery::Machinery;
-use super::{Folder, Isolate, Isolated, Made, Prepared, RunKey, RunRecord, StudyError};
+use super::machinery::{Machinery, Means};
+use super::{Folder, Isolate, Isolated, Made, Memory, Prepared, RunKey, RunRecord, StudyError};
 use regrasp_api::Interrupt;
 use regrasp_planner::{Clock, Silent};
 use std::collections::BTreeSet;
@@ -39,6 +39,8 @@ pub struct Execution<'a> {
     pub threads: usize,
     /// Times runs, and ends them at the time limit.
     pub clock: &'a dyn Clock,
+    /// Tells how much memory a run has in use; without it that is not known.
+    pub memory: Option<&'a dyn Memory>,
     /// Ends the study; runs that it ends are not kept.
     pub interrupt: &'a dyn Interrupt,
     /// Told how far the study is.
@@ -52,6 +54,12 @@ pub struct Execution<'a> {
     pub isolate: Option<&'a dyn Isolate>,
     /// Whether all runs are made so, and not only those in whose midst an earlier process ended.
     pub isolate_all: bool,
+}
+
+impl<'a> From<&Execution<'a>> for Means<'a> {
+    fn from(with: &Execution<'a>) -> Self {
+        Self { clock: with.clock, memory: with.memory, interrupt: with.interrupt, audit: with.audit }
+    }
 }
 
 /// Makes the runs that the folder does not hold yet, and keeps each there as soon as it has ended.
@@ -73,7 +81,7 @@ pub fn execute(
     keys.sort_by_key(|key| (key.scenario, key.seed, key.seed.wrapping_add(key.variant as u64) % variants));
     with.progress.begin(total - keys.len(), total);
     let job = Job {
-        machinery: Machinery::new(prepared, with.clock, with.interrupt, with.audit),
+        machinery: Machinery::new(prepared, with.into()),
         interrupt: with.interrupt,
         keep_plans: with.keep_plans,
         isolate: with.isolate,
@@ -168,10 +176,22 @@ impl Job<'_> {
             }
             None => {
                 self.begun.add(key);
-                self.machinery.make(key)?
+                self.make_afresh(key)?
             }
         };
         made.plan = made.plan.filter(|_| self.keep_plans || study.keeps_plan(key));
         (!self.interrupt.interrupted()).then_some(Ended { key, made })
+    }
+
+    /// Makes a run on a thread of its own, so that it finds nothing of what an earlier run left on this one:
+    /// plugins keep room for their next call. Where the system grants no thread, on this one.
+    fn make_afresh(&self, key: RunKey) -> Option<Made> {
+        thread::scope(|scope| {
+            let builder = thread::Builder::new().name(RUN_THREAD.into()).stack_size(STACK);
+            match builder.spawn_scoped(scope, || self.machinery.make(key)) {
+                Ok(run) => run.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+                Err(_) => self.machinery.make(key),
+            }
+        })
     }
 }

@@ -25,6 +25,8 @@ pub enum Figure {
     Verification,
     /// Questions of collision or distance that planning asked.
     CollisionTests,
+    /// Bytes that planning had in use at once, at most.
+    Memory,
     /// The smallest coefficient of friction at which every grasp still bears what it must.
     Friction,
     /// The largest mass that every grasp carries (kg).
@@ -37,7 +39,7 @@ pub enum Figure {
 
 impl Figure {
     /// Every figure, in the order of the columns of `summary.csv`.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Planning,
         Self::GeneratedNodes,
         Self::GraphNodes,
@@ -48,6 +50,7 @@ impl Figure {
         Self::Clearance,
         Self::Verification,
         Self::CollisionTests,
+        Self::Memory,
         Self::Friction,
         Self::Mass,
         Self::Force,
@@ -67,6 +70,7 @@ impl Figure {
             Self::Clearance => "clearance_m",
             Self::Verification => "verification_s",
             Self::CollisionTests => "collision_tests",
+            Self::Memory => "memory_bytes",
             Self::Friction => "holds_friction",
             Self::Mass => "holds_mass_kg",
             Self::Force => "holds_force_n",
@@ -88,6 +92,7 @@ impl Figure {
             Self::Clearance => certified.and_then(|certified| certified.clearance_m),
             Self::Verification => certified.map(|_| run.times.verification_s),
             Self::CollisionTests => Some(run.counts.collision_tests as f64),
+            Self::Memory => run.times.memory_bytes.map(|bytes| bytes as f64),
             Self::Friction => certified.and_then(|certified| certified.holds_friction),
             Self::Mass => certified.and_then(|certified| certified.holds_mass_kg),
             Self::Force => certified.and_then(|certified| certified.holds_force_n),

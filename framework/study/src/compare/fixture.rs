@@ -81,6 +81,7 @@ pub fn solved(study: &Study, key: RunKey, planning_s: f64) -> RunRecord {
                 share("clearance", 0.5),
                 share("framework", 0.25),
             ]),
+            memory_bytes: Some(2_500_000),
         },
         counts: Counts {
             generated_nodes: 40,

@@ -18,6 +18,8 @@ pub enum MeasureName {
     Verification,
     /// Questions of collision or distance.
     CollisionTests,
+    /// Memory that planning had in use at once, at most (bytes).
+    Memory,
     /// Regrasps of the plan.
     Regrasps,
     /// Duration of the motion (s).
@@ -40,11 +42,12 @@ pub enum MeasureName {
 
 impl MeasureName {
     /// Every name, in the order in which measures are told.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Solved,
         Self::Planning,
         Self::Verification,
         Self::CollisionTests,
+        Self::Memory,
         Self::Regrasps,
         Self::Duration,
         Self::Margin,
@@ -63,6 +66,7 @@ impl MeasureName {
             Self::Planning => "planning",
             Self::Verification => "verification",
             Self::CollisionTests => "collision-tests",
+            Self::Memory => "memory",
             Self::Regrasps => "regrasps",
             Self::Duration => "duration",
             Self::Margin => "margin",
@@ -94,6 +98,8 @@ pub enum Unit {
     Seconds,
     /// Metres, told as mm.
     Metres,
+    /// Bytes, told as kB or MB of powers of ten.
+    Bytes,
     /// Told in this unit, which may be nothing.
     Plain(&'static str),
     /// Shares, told as percentage points.
@@ -106,6 +112,7 @@ impl Unit {
         match self {
             Self::Seconds => "s",
             Self::Metres => "m",
+            Self::Bytes => "bytes",
             Self::Plain(name) => name,
             Self::Share => "share",
         }
@@ -174,6 +181,7 @@ impl Measure {
             Self::Solved | Self::Figure(Figure::Effort) => Unit::Share,
             Self::Figure(Figure::Planning | Figure::Duration | Figure::Verification) => Unit::Seconds,
             Self::Figure(Figure::Clearance) => Unit::Metres,
+            Self::Figure(Figure::Memory) => Unit::Bytes,
             Self::Figure(Figure::Mass) => Unit::Plain("kg"),
             Self::Figure(Figure::Force) => Unit::Plain("N"),
             Self::Figure(_) | Self::Note(..) => Unit::Plain(""),
@@ -219,6 +227,7 @@ impl MeasureName {
             Self::Planning => Figure::Planning,
             Self::Verification => Figure::Verification,
             Self::CollisionTests => Figure::CollisionTests,
+            Self::Memory => Figure::Memory,
             Self::Regrasps => Figure::Regrasps,
             Self::Duration => Figure::Duration,
             Self::Margin => Figure::Margin,
@@ -248,6 +257,7 @@ fn figure_words(figure: Figure) -> (&'static str, [&'static str; 2]) {
         Figure::GraphNodes => ("graph nodes", ["more", "fewer"]),
         Figure::Transfers => ("transfers", ["more", "fewer"]),
         Figure::CollisionTests => ("collision tests", ["more", "fewer"]),
+        Figure::Memory => ("memory", ["more", "less"]),
         Figure::Regrasps => ("regrasps", ["more", "fewer"]),
         Figure::Duration => ("motion", ["longer", "shorter"]),
         Figure::Margin => ("margin", ["larger", "smaller"]),
@@ -285,7 +295,7 @@ mod tests {
             let nouns = Measure::of_runs(records.iter(), chosen).into_iter().map(|measure| measure.noun());
             nouns.collect::<Vec<_>>().join(", ")
         };
-        let all = "solved, planning, verification, collision tests, regrasps, motion, margin";
+        let all = "solved, planning, verification, collision tests, memory, regrasps, motion, margin";
         assert_eq!(of(&records, &[]), all);
         assert_eq!(of(&records, &[MeasureName::Margin, MeasureName::Planning]), "planning, margin");
         let note = [("grip".to_owned(), regrasp_api::Figure::one(2.0))].into();

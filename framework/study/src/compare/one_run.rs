@@ -37,6 +37,7 @@ impl RunRecord {
                 verification_s: run.verification_s,
                 phases_s: statistics.time_s.clone(),
                 roles_s,
+                memory_bytes: None,
             },
             counts: Counts {
                 generated_nodes: statistics.generated_nodes,

@@ -44,7 +44,7 @@ impl RunStatus {
 /// The phases of planning that are timed, in their order: keys of [`Times::phases_s`].
 pub const PHASES: [&str; 5] = ["endpoints", "relay", "search", "smoothing", "timing"];
 
-/// Seconds, which no two runs share: all that a repeated run may change in its record.
+/// What was measured: all that a repeated run may change in its record.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Times {
@@ -57,6 +57,11 @@ pub struct Times {
     /// Planning by who computed, calls of others taken off (s): the slots by name, `clearance` for collision
     /// and distance, and `framework` for the rest. In all [`Times::planning_s`].
     pub roles_s: BTreeMap<String, f64>,
+    /// Bytes that planning had in use at once, at most, beyond those in use when it began
+    /// ([`super::Memory`]); absent where nobody counted. Repeated runs share it, but for the first of a variant on a scenario in a
+    /// process, which also makes tables that those after it find.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub memory_bytes: Option<u64>,
 }
 
 /// What the search counted.
@@ -155,7 +160,7 @@ pub struct RunRecord {
     pub verified: bool,
     /// Why there is no plan, in words; for a solved run absent.
     pub message: Option<String>,
-    /// What was measured by the clock.
+    /// What was measured.
     pub times: Times,
     /// What the search counted.
     pub counts: Counts,

@@ -58,6 +58,9 @@ fn time_columns() -> Vec<Column> {
         column("planning_s", |run, _| run.times.planning_s.to_string()),
         column("verification_s", |run, _| run.times.verification_s.to_string()),
     ];
+    columns.push(column("memory_bytes", |run, _| {
+        run.times.memory_bytes.map(|bytes| bytes.to_string()).unwrap_or_default()
+    }));
     columns.extend(PHASES.map(|phase| {
         column(format!("phase.{phase}_s"), move |run: &RunRecord, _: &Plugins| {
             let phases = &run.times.phases_s;

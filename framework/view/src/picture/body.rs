@@ -1,5 +1,6 @@
 //! Object, hand and obstacles as strokes.
 
+use super::outline::outline;
 use super::view::{Point, area, hull, see};
 use super::{Picture, Scene};
 use regrasp_api::{Configuration, Mesh, Pose, Shape, Vec3};
@@ -21,12 +22,12 @@ impl Picture {
     pub(super) fn draw_object(&mut self, mesh: &Mesh, X_HO: &Pose) {
         let seen: Vec<Point> = mesh.vertices().iter().map(|p| see(&moved(X_HO, p))).collect();
         let depth = see(&X_HO.translation.vector).depth;
-        let mut facets: Vec<(String, f64, [Point; 3])> = Vec::new();
+        let mut facets: Vec<(String, f64, [u32; 3])> = Vec::new();
         for (k, corners) in mesh.facets().iter().enumerate() {
             let points = corners.map(|corner| seen[corner as usize]);
             if area(&points[0], &points[1], &points[2]) > 0.0 {
                 let middle = points.iter().map(|point| point.depth).sum::<f64>();
-                facets.push((class(mesh, k as u32, X_HO), middle, points));
+                facets.push((class(mesh, k as u32, X_HO), middle, *corners));
             }
         }
         // Facets of a convex object do not hide each other, so that those of one colour can share an element;
@@ -36,8 +37,9 @@ impl Picture {
             false => facets.sort_by(|a, b| a.1.total_cmp(&b.1)),
         }
         for (k, group) in facets.chunk_by(|a, b| a.0 == b.0).enumerate() {
-            let path: String = group.iter().map(|(_, _, points)| triangle(points)).collect();
-            let points: Vec<Point> = group.iter().flat_map(|facet| facet.2).collect();
+            let path = outline(group.iter().map(|facet| facet.2), &seen);
+            let corners = group.iter().flat_map(|facet| facet.2);
+            let points: Vec<Point> = corners.map(|corner| seen[corner as usize]).collect();
             let element = format!("<path class=\"{}\" d=\"{path}\"/>", group[0].0);
             // Groups keep their order at what is one depth for everything else.
             self.add(depth + 1e-6 * k as f64, &points, 0.0, element);
@@ -128,15 +130,4 @@ fn class(mesh: &Mesh, facet: u32, X_HO: &Pose) -> String {
     let band = 0.1 * mesh.radius();
     let painted = middle.x.abs() < band || middle.y.abs() < band && middle.x > 0.0;
     format!("rg-{}{shade}", if painted { "paint" } else { "object" })
-}
-
-/// A triangle as part of a path, to a tenth of a millimetre: the first corner, and the way on from there,
-/// which takes fewer characters.
-fn triangle(points: &[Point; 3]) -> String {
-    let tenths = |point: &Point| [point.x, point.y].map(|x| (10.0 * x).round() as i64);
-    let [a, b, c] = points.each_ref().map(tenths);
-    let length = |tenths: i64| tenths as f64 / 10.0;
-    let step = |from: [i64; 2], to: [i64; 2]| [to[0] - from[0], to[1] - from[1]].map(length);
-    let ([bx, by], [cx, cy]) = (step(a, b), step(b, c));
-    format!("M{} {}l{bx} {by} {cx} {cy}z", length(a[0]), length(a[1]))
 }

@@ -6,6 +6,7 @@
 
 mod annotate;
 mod body;
+mod outline;
 mod sheet;
 mod view;
 

@@ -67,29 +67,29 @@ pub(crate) fn floor(search: &Search<'_>, frame: &Frame) -> f64 {
     1.0 / (frame.norm(&centre.w) + centre.radius(search) * longest)
 }
 
-/// Quick bounds of Q1 in `frame` for a grasp that is force closure: the certified one from the centre, and
-/// the depth along the ellipsoid's axes.
-pub(crate) fn glance(search: &Search<'_>, frame: &Frame) -> (f64, f64) {
-    let Some(centre) = Centre::find(search, EXACTLY) else { return (0.0, f64::INFINITY) };
-    let inverse = centre.H.full().cholesky().map(|factor| factor.inverse());
-    let Some(inverse) = inverse else { return (0.0, f64::INFINITY) };
+/// The centre, the axes of the ellipsoid about it in `frame`, and the lower bound of Q1 that it certifies.
+fn around_centre(search: &Search<'_>, frame: &Frame) -> Option<(Twist, Matrix6<f64>, f64)> {
+    let centre = Centre::find(search, EXACTLY)?;
+    let inverse = centre.H.full().cholesky().map(|factor| factor.inverse())?;
     let ellipsoid = SymmetricEigen::new(frame.map * inverse * frame.map.transpose());
     let longest = ellipsoid.eigenvalues.max().max(0.0).sqrt();
     let lower = 1.0 / (frame.norm(&centre.w) + centre.radius(search) * longest);
+    Some((centre.w, ellipsoid.eigenvectors, lower))
+}
+
+/// Quick bounds of Q1 in `frame` for a grasp that is force closure: the certified one from the centre, and
+/// the depth along the ellipsoid's axes.
+pub(crate) fn glance(search: &Search<'_>, frame: &Frame) -> (f64, f64) {
+    let Some((_, axes, lower)) = around_centre(search, frame) else { return (0.0, f64::INFINITY) };
     let along = |axis: Vector6<f64>| search.body.gauge(&frame.twist(&axis.into()));
-    let depths = ellipsoid.eigenvectors.column_iter().map(|axis| along(axis.into()).min(along(-axis)));
+    let depths = axes.column_iter().map(|axis| along(axis.into()).min(along(-axis)));
     (lower, depths.fold(f64::INFINITY, f64::min))
 }
 
 /// Lower and upper bound of Q1 in `frame` for a grasp that is force closure.
 pub(crate) fn bracket(search: &Search<'_>, frame: &Frame) -> (f64, f64) {
-    let Some(centre) = Centre::find(search, EXACTLY) else { return (0.0, f64::INFINITY) };
-    let inverse = centre.H.full().cholesky().map(|factor| factor.inverse());
-    let Some(inverse) = inverse else { return (0.0, f64::INFINITY) };
-    let ellipsoid = SymmetricEigen::new(frame.map * inverse * frame.map.transpose());
-    let longest = ellipsoid.eigenvalues.max().max(0.0).sqrt();
-    let lower = 1.0 / (frame.norm(&centre.w) + centre.radius(search) * longest);
-    (lower, 1.0 / longest_point(search, frame, &centre.w, &ellipsoid.eigenvectors))
+    let Some((w, axes, lower)) = around_centre(search, frame) else { return (0.0, f64::INFINITY) };
+    (lower, 1.0 / longest_point(search, frame, &w, &axes))
 }
 
 /// The (nearly) analytic centre of Ω.

@@ -74,6 +74,8 @@ fn outcome() -> Vec<Property> {
         flag("solved", RunRecord::is_success),
         property("status", "ENUM", |run| Some(status(run))),
         property("time", "REAL", |run| Some(run.times.planning_s)),
+        // In MB, as OMPL's own logs have it.
+        property("memory", "REAL", |run| run.times.memory_bytes.map(|bytes| bytes as f64 / 1e6)),
         flag("correct solution", |run| run.verified),
         property("run seed", "INTEGER", |run| Some(run.seed as f64)),
     ]

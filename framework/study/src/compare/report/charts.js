@@ -143,15 +143,15 @@ function figureTable(names, scenario, cells) {
   const ends = (estimate, form) => (estimate ? `${form(estimate.low)} to ${form(estimate.high)}` : "–");
   const rows = cells.map((cell) => {
     const failures = Object.entries(cell.failures).map(([status, count]) => `${count} ${status}`).join(", ");
-    const values = [`${cell.successes}/${cell.runs}`, ends(cell.success, percent), failures || "–", cell.planning_s ? duration(cell.planning_s.value) : "–", ends(cell.planning_s, duration), text(cell.generated), text(cell.graph), text(cell.regrasps)];
+    const values = [`${cell.successes}/${cell.runs}`, ends(cell.success, percent), failures || "–", cell.planning_s ? duration(cell.planning_s.value) : "–", ends(cell.planning_s, duration), cell.memory === null ? "–" : size(cell.memory), text(cell.generated), text(cell.graph), text(cell.regrasps)];
     return element("tr", {}, element("th", { scope: "row" }, names[cell.variant]), ...values.map((value) => element("td", {}, value)));
   });
   const { paper } = scenario;
   if (paper) {
-    const values = ["–", "–", "–", duration(paper.time_s), "–", paper.generated_nodes, paper.graph_nodes, "–"];
+    const values = ["–", "–", "–", duration(paper.time_s), "–", "–", paper.generated_nodes, paper.graph_nodes, "–"];
     rows.push(element("tr", { class: "paper" }, element("th", { scope: "row" }, `published (${paper.example}), averages`), ...values.map((value) => element("td", {}, String(value)))));
   }
-  const head = ["", "solved", "95 %", "not solved", "median time", "95 %", "generated nodes", "graph nodes", "regrasps"];
+  const head = ["", "solved", "95 %", "not solved", "median time", "95 %", "memory", "generated nodes", "graph nodes", "regrasps"];
   return table(head, rows, "plain");
 }
 

@@ -65,6 +65,8 @@ struct CellData {
     median_of_all_s: Option<f64>,
     ecdf: Vec<(f64, f64)>,
     box_plot: Option<BoxPlot>,
+    /// Bytes.
+    memory: Option<f64>,
     generated: Option<f64>,
     graph: Option<f64>,
     regrasps: Option<f64>,
@@ -173,6 +175,7 @@ fn cell_data(cell: &Cell<'_>) -> CellData {
         median_of_all_s: Some(cell.median_of_all_s()).filter(|time| time.is_finite()),
         ecdf: ecdf(times(), cell.runs.len()),
         box_plot: log_box_plot(times()),
+        memory: median(Figure::Memory),
         generated: median(Figure::GeneratedNodes),
         graph: median(Figure::GraphNodes),
         regrasps: median(Figure::Regrasps),

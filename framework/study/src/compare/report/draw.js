@@ -37,6 +37,11 @@ function duration(s) {
   return s < 1 ? `${digits(1e3 * s)} ms` : `${digits(s)} s`;
 }
 
+/** Bytes as a person reads them, in powers of ten. */
+function size(bytes) {
+  return bytes < 1e6 ? `${digits(1e-3 * bytes)} kB` : `${digits(1e-6 * bytes)} MB`;
+}
+
 /** Seconds on an axis: no digit that says nothing. */
 function tickLabel(s) {
   return duration(s).replace(/\.?0+ /, (zeros) => (zeros.startsWith(".") ? " " : zeros));
@@ -92,6 +97,7 @@ function unitText(unit) {
   const plain = (value) => (value < 0 ? `-${digits(-value)}` : digits(value)).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
   if (unit === "s") return (s) => (s === 0 ? "0 s" : tickLabel(s));
   if (unit === "m") return (m) => `${plain(1e3 * m)} mm`;
+  if (unit === "bytes") return (bytes) => (bytes === 0 ? "0" : size(bytes));
   if (unit === "share") return (share) => `${plain(1e2 * share)} %`;
   return (value) => (unit ? `${plain(value)} ${unit}` : plain(value));
 }

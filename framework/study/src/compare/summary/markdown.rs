@@ -1,6 +1,6 @@
 //! `summary.md`.
 
-use super::number::{count_text, milliseconds, p_text, percent};
+use super::number::{count_text, milliseconds, p_text, percent, three_digits};
 use super::{Finding, family_text, finding, signed, subject};
 use crate::compare::{Cell, Comparison, Family, Figure, LeftOut, RunStatus, Study, StudyScenario, Verdict};
 
@@ -80,7 +80,8 @@ fn left_out_line(pair: &LeftOut) -> String {
     format!("\nNot planned by {}: {}\n", code(&pair.variant), plain(&pair.reason))
 }
 
-const HEAD: [&str; 7] = ["variant", "solved", "% (95 %)", "ms (95 %)", "generated", "graph", "regrasps"];
+const HEAD: [&str; 8] =
+    ["variant", "solved", "% (95 %)", "ms (95 %)", "MB", "generated", "graph", "regrasps"];
 
 fn table(scenario: &StudyScenario, row: &[Cell<'_>]) -> String {
     let mut lines: Vec<Vec<String>> = vec![HEAD.map(str::to_owned).to_vec()];
@@ -90,7 +91,7 @@ fn table(scenario: &StudyScenario, row: &[Cell<'_>]) -> String {
         let none = String::new;
         let time = format!("{}", paper.time_s * 1e3);
         let [generated, graph] = [paper.generated_nodes, paper.graph_nodes].map(|count| count.to_string());
-        lines.push(vec![name, none(), none(), time, generated, graph, none()]);
+        lines.push(vec![name, none(), none(), time, none(), generated, graph, none()]);
     }
     aligned(&lines)
 }
@@ -108,6 +109,7 @@ fn cells(cell: &Cell<'_>) -> Vec<String> {
         format!("{}/{}{failed}", cell.successes().count(), cell.runs.len()),
         cell.success().map(percent).unwrap_or_default(),
         cell.median(Figure::Planning).map(milliseconds).unwrap_or_default(),
+        cell.median(Figure::Memory).map(|found| three_digits(1e-6 * found.value)).unwrap_or_default(),
         median(Figure::GeneratedNodes),
         median(Figure::GraphNodes),
         median(Figure::Regrasps),

@@ -21,7 +21,7 @@ fn only_what_is_shown_is_said() {
     let factor = |key: RunKey| [1.0, 3.0, noise(key)][key.variant];
     let found = findings(&study, &runs(&study, |key| Some(seconds(key) * factor(key))));
     let lead = "Against rlg, which solved 12 of 12, at the median in 15.5 (12.5 to 18.5) ms:";
-    let equal = "the same within 10 %: verification, collision tests, regrasps, motion, margin";
+    let equal = "the same within 10 %: verification, collision tests, memory, regrasps, motion, margin";
     assert_eq!(found[0].lead, lead);
     assert!(
         found[0].lines[0].starts_with("slow: planning 31 ms slower (24 to 38), p = 0.002; the same"),
@@ -93,7 +93,7 @@ fn tables_have_a_row_for_each_scenario_and_variant_and_as_many_cells_as_the_head
 
     let page = markdown(&study, &rows, &family);
     let tables: Vec<&str> = page.lines().filter(|line| line.starts_with('|')).collect();
-    let measures = 7;
+    let measures = 8;
     assert_eq!(tables.len(), 2 * (2 + 2) + 1 + 2 * (2 + measures), "a row for the paper too: {page}");
     let widths: Vec<usize> = tables[..5].iter().map(|line| line.chars().count()).collect();
     assert!(widths.iter().all(|width| *width == widths[0]), "{page}");

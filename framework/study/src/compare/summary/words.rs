@@ -17,6 +17,8 @@ fn scale(measure: &Measure, size: f64) -> Scale {
         Unit::Seconds if size < 1.0 => (1e3, " ms"),
         Unit::Seconds => (1.0, " s"),
         Unit::Metres => (1e3, " mm"),
+        Unit::Bytes if size < 1e6 => (1e-3, " kB"),
+        Unit::Bytes => (1e-6, " MB"),
         Unit::Share => (1e2, " points"),
         Unit::Plain("kg") => (1.0, " kg"),
         Unit::Plain("N") => (1.0, " N"),

@@ -38,6 +38,7 @@ fn run(study: &Study, key: RunKey, time: f64, failing: f64, random: &mut Random)
         motion.regrasps = random.index(3 + key.variant);
         motion.duration_s = 2.0 + random.index(2) as f64;
     }
+    run.times.memory_bytes = Some((2e6 * (0.1 * random.normal()).exp()) as u64);
     if let Some(certified) = &mut run.certified {
         certified.margin = Some(0.1 + 0.01 * random.normal());
     }
