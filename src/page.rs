@@ -96,8 +96,8 @@ fn graph_edge(edge: &EdgeRecord) -> GraphEdge {
     }
 }
 
-/// A place in a plan in words, fingers and obstacles by the names that the problem gives them. Goals, segments,
-/// states and joints are counted from 1.
+/// A place in a plan in words, fingers and obstacles by the names that the problem gives them. Goals,
+/// segments, states and joints are counted from 1.
 pub fn place_text(place: &Place, problem: &Problem) -> String {
     // Everything is counted from 1 where a person reads of it; indices of data begin with 0.
     let part = |name: &str, index: Option<usize>| index.map(|index| format!("{name} {}", index + 1));

@@ -67,5 +67,5 @@ fn what_it_did_not_write_stays() {
     desk.run("gallery sphere-free -o mine").assert_fails(2, &["README.md", "--force"]);
     assert_eq!(desk.read("mine/README.md"), "my thesis");
     desk.run("gallery sphere-free sphere-free -o twice").assert_fails(2, &["`sphere-free`", "two scenarios"]);
-    desk.run("gallery -o -").assert_fails(2, &["needs a folder"]);
+    desk.run("gallery -o -").assert_fails(2, &["need a folder"]);
 }

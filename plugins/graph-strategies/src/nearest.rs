@@ -15,8 +15,8 @@ pub(crate) fn ends(graph: &dyn GraphView) -> impl Iterator<Item = NodeId> {
     std::iter::once(graph.start()).chain(graph.goals().iter().copied())
 }
 
-/// Asks for a path where the ends are joined, or joins an end; then connects a pair that is near, where it may
-/// look at so many `neighbours`, or else explores.
+/// Asks for a path where the ends are joined, or joins an end; then connects a pair that is near, where it
+/// may look at so many `neighbours`, or else explores.
 pub(crate) fn connect_or_explore(
     graph: &dyn GraphView,
     neighbours: Option<usize>,

@@ -360,7 +360,8 @@ mod tests {
 
     #[test]
     fn a_word_or_a_table_is_judged_as_what_it_is() {
-        let with = |surface: Value| json!({"shape": {"kind": "sphere", "radius": 1}, "friction": 0.5, "contact_surface": surface});
+        let shape = json!({"kind": "sphere", "radius": 1});
+        let with = |surface: Value| json!({"shape": shape, "friction": 0.5, "contact_surface": surface});
         let schema = schema_of::<ObjectDescription>();
         for good in [json!("auto"), json!("exact"), json!({"tolerance": 1e-4}), Value::Null] {
             assert_eq!(check_schema(&with(good), &schema), Ok(()));

@@ -58,8 +58,8 @@ pub struct Times {
     /// and distance, and `framework` for the rest. In all [`Times::planning_s`].
     pub roles_s: BTreeMap<String, f64>,
     /// Bytes that planning had in use at once, at most, beyond those in use when it began
-    /// ([`super::Memory`]); absent where nobody counted. Repeated runs share it, but for the first of a variant on a scenario in a
-    /// process, which also makes tables that those after it find.
+    /// ([`super::Memory`]); absent where nobody counted. Repeated runs share it, but for the first of a
+    /// variant on a scenario in a process, which also makes tables that those after it find.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub memory_bytes: Option<u64>,
 }

@@ -1,5 +1,5 @@
-//! Forces for all disturbances from those for the weight alone: the quick half of the proof that a grasp holds
-//! its load.
+//! Forces for all disturbances from those for the weight alone: the quick half of the proof that a grasp
+//! holds its load.
 //!
 //! What a disturbance adds is met by the smallest forces that have its wrench. These are linear in it, so six
 //! of them tell how far any disturbance of a size takes each force, at most.

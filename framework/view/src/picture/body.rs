@@ -9,6 +9,11 @@ use regrasp_world::{ChainHand, LinkFrame, shape_mesh};
 /// How many degrees of brightness a surface has.
 const SHADES: usize = 4;
 
+/// Of more facets than this, those of one slice in depth are taken not to hide each other ...
+const MANY: usize = 200;
+/// ... which is so thick, in radii of the object (three corners' depths are added).
+const SLICE: f64 = 0.4;
+
 /// From where the light falls.
 const LIGHT: Vec3 = Vec3::new(-0.35, -0.55, 0.76);
 
@@ -34,7 +39,11 @@ impl Picture {
         // others are drawn by depth.
         match mesh.is_locally_convex() {
             true => facets.sort_by(|a, b| a.0.cmp(&b.0)),
-            false => facets.sort_by(|a, b| a.1.total_cmp(&b.1)),
+            false => {
+                let slice = if facets.len() > MANY { SLICE * 1e3 * mesh.radius() } else { 0.0 };
+                let depth = |depth: f64| if slice > 0.0 { (depth / slice).floor() } else { depth };
+                facets.sort_by(|a, b| depth(a.1).total_cmp(&depth(b.1)).then_with(|| a.0.cmp(&b.0)));
+            }
         }
         for (k, group) in facets.chunk_by(|a, b| a.0 == b.0).enumerate() {
             let path = outline(group.iter().map(|facet| facet.2), &seen);
