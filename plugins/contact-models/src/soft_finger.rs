@@ -81,7 +81,7 @@ mod tests {
     fn gamma_outside_its_range_is_refused_with_the_range() {
         for gamma in [f64::NAN, f64::INFINITY] {
             let error = SoftFinger::new(SoftFingerSettings { gamma }).unwrap_err().to_string();
-            assert!(error.contains("`gamma`") && error.contains("is not a number"), "{error}");
+            assert!(error.contains("`gamma`") && error.contains("is not a finite number"), "{error}");
         }
         for gamma in [0.0, -0.001, 0.2] {
             let error = SoftFinger::new(SoftFingerSettings { gamma }).unwrap_err().to_string();
