@@ -212,7 +212,7 @@ fn one_grasp_needs_half_or_little_more_than_the_least() {
             assert!((force + G * mass).norm() < 1e-6 && torque.norm() < 1e-7, "{force} {torque}");
             assert!(held.share <= 1.0 && held.effort_share <= 1.0, "{held:?}");
             let needed = least.expect("what is held is held with the least").share.max(0.5);
-            assert!(held.share <= needed + 0.05, "{} where {needed} would do", held.share);
+            assert!(held.share <= 1.2 * needed, "{} where {needed} would do", held.share);
             shares.push(held.share);
         }
         assert!(!shares.is_empty() && shares.len() < 8, "{shares:?}");

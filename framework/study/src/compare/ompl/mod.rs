@@ -137,7 +137,9 @@ mod tests {
             assert_eq!(row.matches("; ").count(), properties);
         }
         assert!(lines[runs + 1].starts_with("1; 6; 0.25; 2.5; 1; 0; "));
-        assert!(lines[runs + 4].starts_with("0; 10; 0.5; 2.5; 0; 3; ") && lines[runs + 4].ends_with("; ; ; ; "));
+        assert!(
+            lines[runs + 4].starts_with("0; 10; 0.5; 2.5; 0; 3; ") && lines[runs + 4].ends_with("; ; ; ; ")
+        );
     }
 
     #[test]
