@@ -88,6 +88,9 @@ pub(crate) fn relay(
     Ok(None)
 }
 
+/// The regrasps that lead to a node, and the nodes after it.
+type Looked = (Vec<Segment>, Vec<Node>);
+
 /// What is looked for at a node: what comes before it, and what may come after it.
 enum Part {
     Before(Option<Vec<Segment>>),
@@ -112,12 +115,7 @@ impl Relay<'_> {
 
     /// The regrasps that lead to a node and, where the motion goes on from there, the nodes after it: of an
     /// idle thread nobody asks whether the first were found. `None` where no regrasps lead to it.
-    fn look(
-        &self,
-        work: &mut Work<'_>,
-        node: usize,
-        goes_on: bool,
-    ) -> Result<Option<(Vec<Segment>, Vec<Node>)>, CallError> {
+    fn look(&self, work: &mut Work<'_>, node: usize, goes_on: bool) -> Result<Option<Looked>, CallError> {
         let (session, task, word) = (work.session, work.task, work.context.random.word());
         let part = |i: usize, work: &mut Work<'_>| match i {
             0 => self.regrasps_to(work, node).map(Part::Before),
