@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{} of {} orientations are reached by a plan that verifies", outcome.solved, outcome.plans);
     let share = outcome.share.ok_or("no plan was asked for")?;
     println!("95 % interval by Wilson: {:.0} to {:.0} %", 100.0 * share.low, 100.0 * share.high);
-    for row in &rows(&protocol, &[outcome.clone()])[1..] {
+    for row in &rows(&protocol, std::slice::from_ref(&outcome))[1..] {
         println!("published: {} ({}); ours in simulation: {}", row[1], row[3], row[5]);
     }
     assert_eq!(outcome.plans, 23);

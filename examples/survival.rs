@@ -121,7 +121,7 @@ impl<'a> Job<'a> {
         let (Some(plan), Some(attempt)) = (plan, trial.attempts.first().filter(|a| a.solved)) else {
             return Ok(row + ",0" + &",".repeat(14));
         };
-        if let Some(folder) = self.plans.as_ref().filter(|_| trial.problem % 16 == 0) {
+        if let Some(folder) = self.plans.as_ref().filter(|_| trial.problem.is_multiple_of(16)) {
             fs::create_dir_all(folder)?;
             let name = row.replace([' ', ','], "-");
             regrasp::plan::write(&folder.join(format!("{name}.json")), plan)?;
