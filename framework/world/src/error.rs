@@ -22,7 +22,7 @@ pub enum WorldError {
     },
     /// Data that depart from their schema.
     #[error(transparent)]
-    Departs(#[from] Departure),
+    Departs(Box<Departure>),
     /// Start or goals.
     #[error(transparent)]
     Ends(#[from] EndsError),
@@ -64,6 +64,12 @@ pub enum WorldError {
         /// Why, and the fix.
         fault: BodyFault,
     },
+}
+
+impl From<Departure> for WorldError {
+    fn from(departure: Departure) -> Self {
+        Self::Departs(Box::new(departure))
+    }
 }
 
 impl Refuse for WorldError {

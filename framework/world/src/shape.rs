@@ -9,7 +9,7 @@ use thiserror::Error;
 pub enum ShapeFault {
     /// A number outside its range, or not finite.
     #[error(transparent)]
-    Departs(#[from] Departure),
+    Departs(Box<Departure>),
     /// A vector that must have a direction is zero or not finite.
     #[error("`{key}` = {value:?} has no direction; give three finite numbers that are not all zero")]
     NoDirection {
@@ -18,6 +18,12 @@ pub enum ShapeFault {
         /// The vector given.
         value: [f64; 3],
     },
+}
+
+impl From<Departure> for ShapeFault {
+    fn from(departure: Departure) -> Self {
+        Self::Departs(Box::new(departure))
+    }
 }
 
 impl Refuse for ShapeFault {

@@ -216,5 +216,5 @@ fn check_range(key: &str, value: f64, (low, high): (f64, f64), hint: &'static st
 
 /// A departure from the schema, with what is probably wrong.
 fn hinted(hint: &'static str) -> impl Fn(Departure) -> HandError {
-    move |departure| HandError::Departs { departure, hint }
+    move |departure| HandError::Departs { departure: Box::new(departure), hint }
 }

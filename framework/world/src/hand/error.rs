@@ -25,7 +25,7 @@ pub enum HandError {
     #[error("{departure}{hint}")]
     Departs {
         /// Where, and how.
-        departure: Departure,
+        departure: Box<Departure>,
         /// What is probably wrong, with its leading `; `, or nothing.
         hint: &'static str,
     },
