@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// The most bytes of a picture: the repository keeps twelve of them.
-const MOST_BYTES: usize = 50_000;
+const MOST_BYTES: usize = 40_000;
 
 #[test]
 fn the_books_gallery_is_what_the_program_makes() {

@@ -70,3 +70,67 @@ impl Response {
         least
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::force::Contact;
+    use super::super::held::Row;
+    use super::super::load::icosahedron;
+    use super::*;
+    use regrasp_api::{Cone, Random};
+
+    /// Four contacts on a ball, two joints behind each.
+    fn grasp(random: &mut Random) -> Held {
+        let mut held = Held::default();
+        for _ in 0..4 {
+            let n = random.direction();
+            let contact = Contact::new(-n, n, &Cone::Elliptic { mu: 0.8, gamma: 0.01 }, 0.03);
+            held.contacts.extend(contact);
+            let row = |random: &mut Random| Row {
+                column_O: random.direction() * 0.05,
+                spin: random.range(-1.0, 1.0),
+                limit: random.range(0.2, 2.0),
+            };
+            held.rows.push(vec![row(random), row(random)]);
+        }
+        held
+    }
+
+    #[test]
+    fn no_disturbance_leaves_less_room_than_is_said() {
+        let mut random = Random::from_key(8, 0, 0, 0);
+        let (mut looked, mut tightest) = (0, f64::INFINITY);
+        for _ in 0..100 {
+            let held = grasp(&mut random);
+            let contacts = &held.contacts;
+            let Some(correction) = Correction::new(contacts) else { continue };
+            let behind = |(contact, rows): (&Contact, &Vec<Row>)| {
+                rows.iter().map(|row| row.of(contact, 0.03, 1.0)).collect::<Vec<_>>()
+            };
+            let shares: Shares = contacts.iter().zip(&held.rows).map(behind).collect();
+            let weight = Vector6::new(0.0, 0.0, 1.0, 0.0, 0.0, 0.0);
+            let pressing = [Force { normal: 3.0, ..Default::default() }; MAX_FINGERS];
+            let response = Response::new(&held, &correction, (&pressing, &weight), [0.3, 0.2]);
+            assert!(response.residual < 1e-9, "{}", response.residual);
+            let said = response.slack(&shares, Some(10.0));
+            let corners = icosahedron().iter().map(|v| v.normalize());
+            for v in corners.flat_map(|v| {
+                [Vector6::new(v.x, v.y, v.z, 0.0, 0.0, 0.0) * 0.3, {
+                    Vector6::new(0.0, 0.0, 0.0, v.x, v.y, v.z) * 0.2
+                }]
+            }) {
+                let forces = correction.towards(contacts, &response.base, &(weight + v));
+                let room = |i: usize| {
+                    let efforts = shares[i].iter().map(|share| 1.0 - share_of(share, &forces[i]).abs());
+                    let cone = forces[i].slack().min(10.0 - forces[i].normal);
+                    efforts.fold(cone, f64::min)
+                };
+                let least = (0..contacts.len()).map(room).fold(f64::INFINITY, f64::min);
+                assert!(least >= said - 1e-9, "{least} where {said} is said");
+                (looked, tightest) = (looked + 1, tightest.min(least - said));
+            }
+        }
+        // A bound that says nothing would pass, too.
+        assert!(looked > 1000 && tightest < 0.2, "{looked} {tightest}");
+    }
+}

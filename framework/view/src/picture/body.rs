@@ -12,7 +12,7 @@ const SHADES: usize = 4;
 /// Of more facets than this, those of one slice in depth are taken not to hide each other ...
 const MANY: usize = 200;
 /// ... which is so thick, in radii of the object (three corners' depths are added).
-const SLICE: f64 = 0.4;
+const SLICE: f64 = 0.8;
 
 /// From where the light falls.
 const LIGHT: Vec3 = Vec3::new(-0.35, -0.55, 0.76);
