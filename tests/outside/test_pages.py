@@ -158,7 +158,7 @@ def test_the_verifiers_table_sorts_and_leads_to_the_place(folder, plan, visit):
     assert "clearance" in page.locator("#caption").inner_text()
     page.keyboard.press("Home")
     assert page.evaluate("regrasp.app.spotlight.marks.length") == 0
-    assert "Segment 0" in page.locator("#caption").inner_text()
+    assert "Segment 1 " in page.locator("#caption").inner_text()
 
 
 def test_forces_are_arrows_that_end_at_the_contacts(folder, plan, visit):

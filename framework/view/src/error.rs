@@ -23,7 +23,7 @@ pub enum ViewError {
         error: PoseError,
     },
     /// A segment or state does not fit the hand, or holds a number that is not finite.
-    #[error("segment {segment}, state {state}: {reason}; `regrasp verify` says more")]
+    #[error("segment {}, state {}: {reason}; `regrasp verify` says more", .segment + 1, .state + 1)]
     State {
         /// The segment, counted from 0.
         segment: usize,
