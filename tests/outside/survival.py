@@ -93,6 +93,16 @@ def array(table, worlds):
     return np.array([[*(margin(row, *m) for m in MARGINS.values()), *(int(row[w]) for w in worlds)] for row in table])
 
 
+def beside(names, mean, samples):
+    """Prints the best margin beside each other one, then each beside the next."""
+    order = [int(k) for k in np.argsort(-mean)]
+    for a, b in [(order[0], k) for k in order[1:]] + list(zip(order[1:], order[2:])):
+        low, high = ranks.interval(samples[:, a] - samples[:, b])
+        apart = mean[a] - mean[b]
+        verdict = "tells better" if low > 0 and apart >= 0.05 else "no difference that matters"
+        print(f"- {names[a]} beside {names[b]}: {apart:+.2f} ({low:+.2f} to {high:+.2f}): {verdict}")
+
+
 def tables(groups, worlds):
     """Prints how the margins of the plans go with what they survive."""
     count = len(MARGINS)
@@ -111,14 +121,7 @@ def tables(groups, worlds):
     total = sum(map(len, groups.values()))
     print(f"| mean | {total} | " + " | ".join(f"{rho:.2f}" for rho in mean) + " |")
     print("| 95 % | | " + " | ".join(f"{low:.2f} to {high:.2f}" for low, high in intervals) + " |\n")
-    best = int(np.argmax(mean))
-    names = list(MARGINS)
-    for k in range(count):
-        if k != best:
-            low, high = ranks.interval(samples[:, best] - samples[:, k])
-            apart = mean[best] - mean[k]
-            verdict = "tells better" if low > 0 and apart >= 0.05 else "no difference that matters"
-            print(f"- {names[best]} beside {names[k]}: {apart:+.2f} ({low:+.2f} to {high:+.2f}): {verdict}")
+    beside(list(MARGINS), mean, samples)
     print("\n| world | arrive | " + " | ".join(MARGINS) + " |\n|---|--:|" + "--:|" * count)
     for w, world in enumerate(worlds):
         arrived = [group[:, count + w] == 1 for group in groups.values()]
