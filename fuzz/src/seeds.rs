@@ -2,6 +2,9 @@
 
 use regrasp::run::scenario::{HANDS, SCENARIOS};
 use std::fmt::Write;
+use std::io::{Cursor, Write as _};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 /// The built-in scenario files.
 pub fn scenarios() -> Vec<Vec<u8>> {
@@ -54,6 +57,37 @@ pub fn urdfs() -> Vec<Vec<u8>> {
         }
     }
     vec![(text + "</robot>\n").into_bytes()]
+}
+
+/// A hand of three fingers as MJCF, with classes, actuators and an equality.
+pub fn mjcfs() -> Vec<Vec<u8>> {
+    let mut fingers = String::new();
+    for finger in 0..3 {
+        let angle = 2.0944 * f64::from(finger);
+        let _ = write!(
+            fingers,
+            "<body name=\"base{finger}\" pos=\"{} {} 0\" euler=\"0 0 {angle}\">\
+             <joint name=\"a{finger}\" axis=\"1 0 0\"/><geom type=\"capsule\" size=\"0.008\" \
+             fromto=\"0 0 0 0 0 0.04\"/>\n\
+             <body pos=\"0 0 0.04\" quat=\"1 0 0 0\"><joint name=\"b{finger}\"/><geom size=\"0.008\"/>\
+             <body pos=\"0 0 0.04\"><joint name=\"c{finger}\"/>\
+             <geom class=\"tip\" pos=\"0 0 0.03\"/></body></body></body>\n",
+            0.05 * angle.cos(),
+            0.05 * angle.sin()
+        );
+    }
+    let text = format!(
+        "<mujoco model=\"three\">\n<compiler angle=\"radian\" eulerseq=\"xyz\" autolimits=\"true\"/>\n\
+         <default><joint axis=\"0 1 0\" range=\"-1.2 1.2\" actuatorfrcrange=\"-1 1\"/>\
+         <default class=\"tip\"><geom type=\"sphere\" size=\"0.01\"/></default></default>\n\
+         <worldbody><body name=\"palm\"><geom type=\"box\" size=\"0.06 0.06 0.01\" pos=\"0 0 \
+         -0.02\"/>\n{fingers}</body></worldbody>\n\
+         <contact><exclude body1=\"palm\" body2=\"base0\"/></contact>\n\
+         <equality><joint joint1=\"c0\" joint2=\"b0\" polycoef=\"0.1 0.9 0 0 0\"/></equality>\n\
+         <actuator><position joint=\"a1\" forcerange=\"-2 2\" kp=\"3\"/></actuator>\n\
+         <keyframe><key name=\"home\" qpos=\"0 0.3 0.4 0 0.3 0.4 0 0.3 0.4\"/></keyframe>\n</mujoco>\n"
+    );
+    vec![text.into_bytes()]
 }
 
 const CORNERS: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [0.04, 0.0, 0.0], [0.0, 0.04, 0.0], [0.0, 0.0, 0.04]];
@@ -116,6 +150,76 @@ pub fn daes() -> Vec<Vec<u8>> {
         )
         .into_bytes(),
     ]
+}
+
+/// The tetrahedron as glTF: as text with its numbers in it, and in the binary form.
+pub fn gltfs() -> Vec<Vec<u8>> {
+    let corners = CORNERS.iter().flatten().flat_map(|x| x.to_le_bytes());
+    let facets = FACETS.iter().flatten().flat_map(|&corner| (corner as u16).to_le_bytes());
+    let numbers: Vec<u8> = corners.chain(facets).collect();
+    let scene = |buffer: serde_json::Value| {
+        serde_json::json!({
+            "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }],
+            "nodes": [{ "mesh": 0, "translation": [0.0, 0.0, 0.0], "scale": [1.0, 1.0, 1.0] }],
+            "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
+            "accessors": [
+                { "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
+                  "min": [0.0, 0.0, 0.0], "max": [0.04, 0.04, 0.04] },
+                { "bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR" },
+            ],
+            "bufferViews": [
+                { "buffer": 0, "byteOffset": 0, "byteLength": 48 },
+                { "buffer": 0, "byteOffset": 48, "byteLength": 24 },
+            ],
+            "buffers": [buffer],
+        })
+        .to_string()
+    };
+    let uri = format!("data:application/octet-stream;base64,{}", base64(&numbers));
+    let text = scene(serde_json::json!({ "byteLength": 72, "uri": uri }));
+    let mut head = scene(serde_json::json!({ "byteLength": 72 }));
+    head.extend(std::iter::repeat_n(' ', head.len().next_multiple_of(4) - head.len()));
+    let parts = [(b"JSON", head.as_bytes()), (b"BIN\0", &numbers[..])];
+    let length: usize = 12 + parts.iter().map(|(_, bytes)| 8 + bytes.len()).sum::<usize>();
+    let mut binary = b"glTF\x02\0\0\0".to_vec();
+    binary.extend((length as u32).to_le_bytes());
+    for (kind, bytes) in parts {
+        binary.extend((bytes.len() as u32).to_le_bytes());
+        binary.extend(kind.iter().chain(bytes));
+    }
+    vec![text.into_bytes(), binary]
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const SIGNS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let sign = |bits: u32| char::from(SIGNS[bits as usize & 63]);
+    // The tetrahedron's bytes are a multiple of three.
+    let threes = bytes.chunks_exact(3).map(|three| u32::from_be_bytes([0, three[0], three[1], three[2]]));
+    threes.flat_map(|bits| [18, 12, 6, 0].map(|shift| sign(bits >> shift))).collect()
+}
+
+/// The tetrahedron as 3MF's model, as text and in its archive.
+pub fn threemfs() -> Vec<Vec<u8>> {
+    let corners = CORNERS.map(|[x, y, z]| format!("<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>"));
+    let facets = FACETS.map(|[a, b, c]| format!("<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>"));
+    let model = format!(
+        "<model unit=\"meter\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n\
+         <resources><object id=\"1\" type=\"model\"><mesh><vertices>{}</vertices>\n\
+         <triangles>{}</triangles></mesh></object>\n\
+         <object id=\"2\"><components><component objectid=\"1\"/></components></object></resources>\n\
+         <build><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 0 0 0\"/></build></model>\n",
+        corners.concat(),
+        facets.concat()
+    );
+    vec![model.clone().into_bytes(), archive("3D/3dmodel.model", model.as_bytes())]
+}
+
+/// A zip archive of one file, which is stored as it is.
+pub fn archive(name: &str, bytes: &[u8]) -> Vec<u8> {
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    writer.start_file(name, stored).and_then(|()| Ok(writer.write_all(bytes)?)).expect("memory takes it");
+    writer.finish().expect("memory takes it").into_inner()
 }
 
 /// The head of an ELF library, and what no library is.

@@ -1,6 +1,6 @@
 """The package's pieces beside the best Python peer of each: seconds per call, ours in batches.
 
-    pip install regrasp scipy pin trimesh rtree potpourri3d
+    pip install regrasp scipy pin trimesh rtree potpourri3d pygeodesic
     python peers.py [--count N]
 
 A peer is called as its users call it: one grasp or posture at a time where it has no batches (scipy,
@@ -18,12 +18,15 @@ import pinocchio
 import potpourri3d
 import regrasp as rg
 import trimesh
+from pygeodesic.geodesic import PyGeodesicAlgorithmExact
 from scipy.optimize import nnls
 from scipy.spatial import ConvexHull
 
 EDGES = 8
 #: Calls of peers in a round: they are slow, and have no batches to speak of.
 FEW = 300
+#: Of exact geodesics, which take half a second each.
+EXACT = 10
 
 
 def seconds(call: Callable[[], object], calls: int) -> float:
@@ -171,30 +174,38 @@ def surfaces(count: int) -> list[tuple]:
 
 
 def geodesics(count: int) -> list[tuple]:
-    """Between vertices; the peer flips edges, which finds a shortest path of those nearby."""
+    """Between vertices. One peer finds shortest paths, as we do; the other flips edges: shortest of those nearby."""
     rows = []
     for subdivisions in (3, 5):
         ball = trimesh.creation.icosphere(subdivisions=subdivisions, radius=0.03)
         bench = rg.Bench(rg.Scenario(object=ball, start=rg.pose(z=0.085), goals=[rg.pose(z=0.086)]))
         points, _ = bench.closest_points(4 / 3 * ball.vertices)
         ends = np.random.default_rng(9).integers(len(ball.vertices), size=(2, min(count, 2000)))
+        ends = ends[:, ends[0] != ends[1]]
         a, b = (rg.SurfacePoints(points.facets[i], points.points[i], points.normals[i]) for i in ends)
-        lengths, few = bench.geodesics(a, b), min(len(a), FEW)
-        solver = potpourri3d.EdgeFlipGeodesicSolver(ball.vertices, ball.faces)
-        paths = [solver.find_geodesic_path(*pair) for pair in ends.T[:few] if pair[0] != pair[1]]
-        theirs = [np.linalg.norm(np.diff(path, axis=0), axis=1).sum() for path in paths]
-        own = lengths[:few][ends[0][:few] != ends[1][:few]]
-        shares = own / theirs
+        lengths, few, fewest = bench.geodesics(a, b), ends.T[:FEW], ends.T[:EXACT]
+        exact = PyGeodesicAlgorithmExact(ball.vertices, ball.faces)
+        flips = potpourri3d.EdgeFlipGeodesicSolver(ball.vertices, ball.faces)
+        shortest = [exact.geodesicDistance(*pair)[0] for pair in fewest]
+        nearby = [path_length(flips.find_geodesic_path(*pair)) for pair in few]
         # Ours begin and end at contacts of a ball, a hair beside the vertices.
-        assert shares.max() < 1.000_2 and np.median(shares) > 0.999
-        rows.append((
-            f"geodesic on a mesh, {len(ball.faces)} facets",
-            seconds(lambda bench=bench, a=a, b=b: bench.geodesics(a, b), len(a)),
-            "potpourri3d, edge flips",
-            seconds(lambda solver=solver, pairs=ends.T[:few]: [
-                solver.find_geodesic_path(*pair) for pair in pairs if pair[0] != pair[1]], few),
-        ))  # fmt: skip
+        for theirs in (shortest, nearby):
+            shares = lengths[: len(theirs)] / theirs
+            assert shares.max() < 1.000_2 and np.median(shares) > 0.999
+        ours = seconds(lambda bench=bench, a=a, b=b: bench.geodesics(a, b), len(a))
+        piece = f"geodesic on a mesh, {len(ball.faces)} facets"
+        peers = (
+            ("pygeodesic, exact", exact.geodesicDistance, fewest),
+            ("potpourri3d, edge flips, local", flips.find_geodesic_path, few),
+        )
+        for peer, find, pairs in peers:
+            all_of_them = lambda find=find, pairs=pairs: [find(*pair) for pair in pairs]
+            rows.append((piece, ours, peer, seconds(all_of_them, len(pairs))))
     return rows
+
+
+def path_length(path: np.ndarray) -> float:
+    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
 
 
 def main() -> None:

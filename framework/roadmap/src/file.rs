@@ -148,6 +148,7 @@ fn words(bytes: &[u8]) -> Vec<u32> {
 mod tests {
     use super::*;
     use crate::Named;
+    use regrasp_api::Random;
 
     fn identity() -> Identity {
         let named = |name: &str| Named { name: name.into(), digest: "0".into() };
@@ -187,6 +188,31 @@ mod tests {
         assert_eq!(parse(&other).unwrap_err(), Fault::Version(9));
         let longer = [whole, vec![0; 8]].concat();
         assert!(matches!(parse(&longer), Err(Fault::Damaged(_))));
+    }
+
+    /// Who means harm sets the digest right again.
+    #[test]
+    fn what_is_changed_with_its_digest_is_a_graph_or_refused() {
+        let whole = bytes(&roadmap(), &identity());
+        let mut random = Random::from_key(11, 0, 0, 0);
+        let mut graphs = 0;
+        for _ in 0..20_000 {
+            let mut changed = whole.clone();
+            for _ in 0..1 + random.index(3) {
+                let at = FIXED + random.index(whole.len() - FIXED - 8);
+                changed[at] = [0, 0xff, 0x7f, changed[at] ^ 1 << random.index(8)][random.index(4)];
+            }
+            let sum_at = changed.len() - 8;
+            let sum = digest(&changed[..sum_at]).to_le_bytes();
+            changed[sum_at..].copy_from_slice(&sum);
+            let Ok((roadmap, identity)) = parse(&changed) else { continue };
+            assert_eq!(bytes(&roadmap, &identity).len(), changed.len());
+            graphs += 1;
+        }
+        assert!((1_000..19_000).contains(&graphs), "{graphs}");
+        for joints in [vec![usize::MAX, 2], vec![9, 9], vec![1; 9]] {
+            assert!(Roadmap::from_parts(RoadmapParts { joints, ..roadmap().parts() }).is_none());
+        }
     }
 
     #[test]

@@ -6,7 +6,8 @@
 
 use nalgebra::Quaternion;
 use regrasp_api::{
-    Configuration, FingerIndex, FingerJoints, FingerSet, Hand, PerFinger, Pose, Rotation, Task, Vec3,
+    Configuration, FingerIndex, FingerJoints, FingerSet, Hand, MAX_FINGER_JOINTS, MAX_FINGERS, PerFinger,
+    Pose, Rotation, Task, Vec3,
 };
 
 /// Words before those of the fingers: which of them hold, and the pose.
@@ -37,6 +38,9 @@ impl Nodes {
 
     /// The grasps of a hand with so many joints a finger; `None` where the words are no rows of numbers.
     pub fn from_rows(joints: Vec<usize>, rows: Vec<u32>) -> Option<Self> {
+        if joints.len() > MAX_FINGERS || joints.iter().any(|&count| count > MAX_FINGER_JOINTS) {
+            return None;
+        }
         let words = words(&joints);
         let is_number = |row: &[u32]| row[1..].iter().all(|&word| f32::from_bits(word).is_finite());
         if !rows.len().is_multiple_of(words) || !rows.chunks_exact(words).all(is_number) {
@@ -112,7 +116,8 @@ pub(crate) fn encode(task: &Task<'_>, q: &Configuration) -> Vec<u32> {
 
 /// The grasp of a row, each finger exactly at its contact; `None` where one cannot be there.
 pub(crate) fn decode(task: &Task<'_>, joints: &[usize], row: &[u32]) -> Option<Configuration> {
-    if task.hand.finger_count() != joints.len() {
+    let fits = |finger: FingerIndex| task.hand.finger(finger).joints.len() == joints[finger.index()];
+    if task.hand.finger_count() != joints.len() || !FingerSet::first(joints.len()).iter().all(fits) {
         return None;
     }
     let float = |i: usize| f64::from(f32::from_bits(row[i]));

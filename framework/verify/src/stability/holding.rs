@@ -199,7 +199,11 @@ impl HoldingCheck {
         if self.trails.len() <= way {
             self.trails.resize(way + 1, Trail::default());
         }
-        if let Some(slack) = self.respond(way, &grasp, &wanted[0]) {
+        let trail = &self.trails[way];
+        let before = trail.carried.as_ref().and_then(|carried| carried.first()).or(known);
+        let answer = before.and_then(|before| self.respond(&grasp, (before, &wanted[0]), trail.solved));
+        if let Some((slack, base)) = answer {
+            self.trails[way].carried.iter_mut().for_each(|carried| carried[0] = base);
             return Ok(slack);
         }
         let Trail { carried, solved } = std::mem::take(&mut self.trails[way]);
@@ -216,10 +220,14 @@ impl HoldingCheck {
         Ok(slack)
     }
 
-    /// The slack that the carried forces for the weight alone prove, if it is enough.
-    fn respond(&mut self, way: usize, grasp: &Grasp<'_>, weight: &Vector6<f64>) -> Option<f64> {
-        let Trail { carried, solved } = &self.trails[way];
-        let before = (carried.as_ref()?.first()?, weight);
+    /// The slack that forces near to those `before`, for the weight alone, prove, and these forces; `None`
+    /// where it is not enough.
+    fn respond(
+        &self,
+        grasp: &Grasp<'_>,
+        before: (&Forces, &Vector6<f64>),
+        solved: f64,
+    ) -> Option<(f64, Forces)> {
         // The corners of the disturbances' icosahedra.
         let corner = icosahedron()[0].norm();
         let sizes = [self.force_size(), self.torque_size()].map(|size| size * corner);
@@ -227,10 +235,7 @@ impl HoldingCheck {
         let response = Response::new(held, correction, before, sizes);
         let slack = response.slack(&grasp.shares, self.load.max_normal_force.map(|most| most / self.unit));
         let is_proved = self.is_proved(grasp, response.residual, slack) && slack > DWINDLED * solved;
-        is_proved.then(|| {
-            self.trails[way].carried.iter_mut().for_each(|carried| carried[0] = response.base);
-            slack
-        })
+        is_proved.then_some((slack, response.base))
     }
 
     /// Whether what balances a residual exactly, smaller than residual/singular, leaves neither cones nor

@@ -51,10 +51,7 @@ impl Winding {
             } else if let Some(halves) = group.halves {
                 open.extend(halves);
             } else {
-                sum += self.corners[group.range.0..group.range.1]
-                    .iter()
-                    .map(|facet| angle(facet, p))
-                    .sum::<f64>();
+                sum += angle(&self.corners[group.range.0..group.range.1], p);
             }
         }
         sum / (4.0 * PI)
@@ -89,11 +86,23 @@ fn group(corners: &mut [[Vec3; 3]], first: usize, groups: &mut Vec<Group>) -> us
     place
 }
 
-/// The solid angle of a facet, positive where its back is seen (van Oosterom and Strackee, "The solid angle
-/// of a plane triangle", IEEE Trans. Biomed. Eng. 1983).
-fn angle(facet: &[Vec3; 3], p: &Vec3) -> f64 {
-    let [a, b, c] = facet.map(|corner| corner - p);
-    let (x, y, z) = (a.norm(), b.norm(), c.norm());
-    let below = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
-    2.0 * a.dot(&b.cross(&c)).atan2(below)
+/// The solid angle of a few facets, positive where their backs are seen (van Oosterom and Strackee, "The solid
+/// angle of a plane triangle", IEEE Trans. Biomed. Eng. 1983).
+///
+/// Half of each is the argument of a complex number; the argument of their product is the sum, but for whole
+/// turns, which are counted.
+fn angle(facets: &[[Vec3; 3]], p: &Vec3) -> f64 {
+    let (mut re, mut im, mut turns) = (1.0, 0.0, 0.0);
+    for facet in facets {
+        let [a, b, c] = facet.map(|corner| corner - p);
+        let (x, y, z) = (a.norm(), b.norm(), c.norm());
+        let below = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
+        let above = a.dot(&b.cross(&c));
+        let before: f64 = im;
+        (re, im) = (re * below - im * above, re * above + im * below);
+        if before * above > 0.0 && before * im < 0.0 {
+            turns += before.signum();
+        }
+    }
+    2.0 * (im.atan2(re) + 2.0 * PI * turns)
 }

@@ -72,10 +72,18 @@ impl Collapse<'_> {
             let (_, error) = self.place(u, v);
             if error.sqrt() <= self.tolerance {
                 let version = self.versions[u as usize] + self.versions[v as usize];
-                // Errors are not negative: their bits order as they do.
-                self.queue.push(Reverse((error.to_bits(), u.min(v), u.max(v), version)));
+                // Costs are not negative: their bits order as they do.
+                let cost = error + self.length_cost(u, v);
+                self.queue.push(Reverse((cost.to_bits(), u.min(v), u.max(v), version)));
             }
         }
+    }
+
+    /// What an edge costs for its length (m²): of those that are as good the shortest goes first, or in flat
+    /// parts one vertex would gather all others round itself.
+    fn length_cost(&self, u: u32, v: u32) -> f64 {
+        let length = (self.surface.point(v) - self.surface.point(u)).norm();
+        (AS_GOOD * self.tolerance * length / self.touch.radius).powi(2)
     }
 
     /// Where two vertices become one, and the error there (m²).

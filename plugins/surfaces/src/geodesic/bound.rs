@@ -16,6 +16,8 @@ const TRIES: usize = 48;
 const FEWEST_FACETS: usize = 100;
 /// Balls are of use only where they lengthen the way by this factor.
 const USEFUL: f64 = 1.02;
+/// A ball that reaches a facet to this part of its radius, along the normal, is the one below it.
+const TOUCHES: f64 = 0.005;
 /// Angle (rad) of great circle beyond which a ball's bound is not used: paths from the far side meet there.
 const FARTHEST: f64 = 3.0;
 
@@ -43,6 +45,15 @@ pub(super) struct Ball {
     radius: f64,
 }
 
+impl Ball {
+    /// Whether the ball touches the middle of a facet, as nearly as makes no difference.
+    fn is_below(&self, polyhedron: &Polyhedron, facet: u32) -> bool {
+        let middle = polyhedron.mesh.corners(facet).iter().sum::<Vec3>() / 3.0;
+        let nearest = self.p_OB + polyhedron.mesh.normal(facet) * self.radius;
+        (middle - nearest).norm() < TOUCHES * self.radius
+    }
+}
+
 /// Large balls inside the solid, each touching the surface at least once.
 pub(super) fn inscribed_balls(polyhedron: &Polyhedron, closest: &ClosestPoints) -> Vec<Ball> {
     let count = polyhedron.mesh.facets().len();
@@ -50,8 +61,11 @@ pub(super) fn inscribed_balls(polyhedron: &Polyhedron, closest: &ClosestPoints) 
     if count < FEWEST_FACETS {
         return balls;
     }
-    for index in 0..TRIES {
-        let ball = ball_below(polyhedron, closest, (index * count / TRIES) as u32);
+    for facet in (0..TRIES).map(|index| (index * count / TRIES) as u32) {
+        if balls.iter().any(|ball| ball.is_below(polyhedron, facet)) {
+            continue;
+        }
+        let ball = ball_below(polyhedron, closest, facet);
         let is_known = |other: &Ball| {
             (other.p_OB - ball.p_OB).norm() < 0.05 * ball.radius && other.radius > 0.98 * ball.radius
         };
