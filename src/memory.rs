@@ -27,6 +27,9 @@ fn count(change: i64) {
 ///
 /// Every call is passed on as it is: what a library of plugins allocates, by the system's allocator itself,
 /// may be freed here and the other way round. What a library allocates is not counted.
+///
+/// Cost: some ten instructions an allocation; a plan of `cubic` has 93,000 of these, of 600 million
+/// instructions.
 struct Counting;
 
 fn size(layout: Layout) -> i64 {
