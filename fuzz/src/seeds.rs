@@ -1,6 +1,8 @@
 //! Whole inputs to damage: the built-in files, and small ones that are written here.
 
+use regrasp::host::Registry;
 use regrasp::run::scenario::{HANDS, SCENARIOS};
+use regrasp::study::compare::{Hypotheses, Machine, Seeds, StudyWish, VariantWish, prepare};
 use std::fmt::Write;
 use std::io::{Cursor, Write as _};
 use zip::write::SimpleFileOptions;
@@ -59,11 +61,11 @@ pub fn urdfs() -> Vec<Vec<u8>> {
     vec![(text + "</robot>\n").into_bytes()]
 }
 
-/// A hand of three fingers as MJCF, with classes, actuators and an equality.
+/// A hand of four fingers as MJCF, one of them coupled, with classes, actuators and an equality.
 pub fn mjcfs() -> Vec<Vec<u8>> {
     let mut fingers = String::new();
-    for finger in 0..3 {
-        let angle = 2.0944 * f64::from(finger);
+    for finger in 0..4 {
+        let angle = 1.5708 * f64::from(finger);
         let _ = write!(
             fingers,
             "<body name=\"base{finger}\" pos=\"{} {} 0\" euler=\"0 0 {angle}\">\
@@ -77,7 +79,7 @@ pub fn mjcfs() -> Vec<Vec<u8>> {
         );
     }
     let text = format!(
-        "<mujoco model=\"three\">\n<compiler angle=\"radian\" eulerseq=\"xyz\" autolimits=\"true\"/>\n\
+        "<mujoco model=\"four\">\n<compiler angle=\"radian\" eulerseq=\"xyz\" autolimits=\"true\"/>\n\
          <default><joint axis=\"0 1 0\" range=\"-1.2 1.2\" actuatorfrcrange=\"-1 1\"/>\
          <default class=\"tip\"><geom type=\"sphere\" size=\"0.01\"/></default></default>\n\
          <worldbody><body name=\"palm\"><geom type=\"box\" size=\"0.06 0.06 0.01\" pos=\"0 0 \
@@ -85,7 +87,7 @@ pub fn mjcfs() -> Vec<Vec<u8>> {
          <contact><exclude body1=\"palm\" body2=\"base0\"/></contact>\n\
          <equality><joint joint1=\"c0\" joint2=\"b0\" polycoef=\"0.1 0.9 0 0 0\"/></equality>\n\
          <actuator><position joint=\"a1\" forcerange=\"-2 2\" kp=\"3\"/></actuator>\n\
-         <keyframe><key name=\"home\" qpos=\"0 0.3 0.4 0 0.3 0.4 0 0.3 0.4\"/></keyframe>\n</mujoco>\n"
+         <keyframe><key name=\"home\" qpos=\"0 0.3 0.4 0 0.3 0.4 0 0.3 0.4 0 0.3 0.4\"/></keyframe>\n</mujoco>\n"
     );
     vec![text.into_bytes()]
 }
@@ -234,9 +236,22 @@ pub fn libraries() -> Vec<Vec<u8>> {
 
 /// A study's description.
 pub fn studies() -> Vec<Vec<u8>> {
-    let scenario = serde_json::json!({ "name": "sphere", "file": "sphere" });
-    let study = serde_json::json!({
-        "format": "regrasp-study", "version": 1, "scenarios": [scenario], "variants": [], "seeds": { "first": 0, "count": 1 },
-    });
-    vec![study.to_string().into_bytes()]
+    let study = || {
+        let wish = StudyWish {
+            command: vec!["regrasp".into(), "compare".into(), "sphere-free".into()],
+            versions: [("regrasp".to_owned(), "0.2.0".to_owned())].into(),
+            machine: Machine::default(),
+            started_s: 1,
+            shard: None,
+            variants: vec![VariantWish { name: "default".into(), ..VariantWish::default() }],
+            seeds: Seeds { first: 1, count: 3 },
+            time_limit_s: Some(1.0),
+            skip_unsupported: false,
+            hypotheses: Hypotheses::default(),
+        };
+        let scenarios = [regrasp::load("sphere-free").ok()?];
+        let registry = Registry::linked().ok()?;
+        serde_json::to_vec_pretty(&prepare(wish, &scenarios, &registry).ok()?.study).ok()
+    };
+    study().into_iter().collect()
 }

@@ -80,7 +80,7 @@ fn geom(
 }
 
 fn body(tag: &Tag, place: Place<'_>, reader: &mut Reader<'_>) -> Result<(), Fault> {
-    let name = tag.own("name").map_or_else(|| format!("body in line {}", tag.line), str::to_owned);
+    let name = tag.own("name").map_or_else(|| reader.nameless(tag.line), str::to_owned);
     let X_PB = place.X_PF * reader.compiler.pose(&reader.classes.of(tag, None)?)?;
     let class = tag.own("childclass").or(place.class);
     let mut hinges = Vec::new();

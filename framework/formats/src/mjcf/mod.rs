@@ -44,9 +44,21 @@ struct Reader<'t> {
     references: BTreeMap<String, f64>,
     remarks: Vec<String>,
     idle: BTreeMap<String, Vec<usize>>,
+    /// How many bodies without a name begin in each line; lines of included files count as the same.
+    nameless: BTreeMap<usize, usize>,
 }
 
 impl Reader<'_> {
+    /// A name for a body that has none.
+    fn nameless(&mut self, line: usize) -> String {
+        let count = self.nameless.entry(line).or_default();
+        *count += 1;
+        match *count {
+            1 => format!("body in line {line}"),
+            count => format!("body {count} in line {line}"),
+        }
+    }
+
     fn idle(&mut self, tag: &Tag) {
         self.idle.entry(format!("<{}>", tag.name)).or_default().push(tag.line);
     }
@@ -72,6 +84,7 @@ pub fn read_mjcf(path: &Path) -> Result<Robot, Fault> {
         references: BTreeMap::new(),
         remarks: Vec::new(),
         idle: BTreeMap::new(),
+        nameless: BTreeMap::new(),
     };
     reader.meshes = Meshes::new(&root, &reader)?;
     top(&root, &mut reader);

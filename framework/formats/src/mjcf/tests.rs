@@ -139,3 +139,17 @@ fn motors_without_a_range_of_force_pull_with_their_gain_over_their_range() {
     assert_eq!((effort("j"), effort("k")), (Some(3.0), Some(6.0)));
     assert!(robot.remarks.iter().any(|remark| remark.contains("`j` and of 1 more has no `forcerange`")));
 }
+
+/// Bodies need no names, and files without line ends are read.
+#[test]
+fn bodies_without_names_in_one_line_are_told_apart() {
+    let robot = read(
+        "<worldbody><body><joint range='-1 1'/><body pos='0 0 1'><joint range='-1 1'/></body></body>\
+         <body name='last'/></worldbody>",
+    )
+    .unwrap();
+    let names: Vec<&str> = robot.links.iter().map(|link| link.name.as_str()).collect();
+    assert_eq!(names, ["world", "body in line 1", "body 2 in line 1", "last"]);
+    let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+    assert_eq!(joints[..2], ["body in line 1 joint 1", "body 2 in line 1 joint 1"]);
+}

@@ -80,9 +80,10 @@ fn claims(line: &str) -> Vec<(String, Said)> {
 
 /// Of `planning 3.1 ms slower (1.4 to 5.0), p = 0.002` the noun and the word.
 fn shown(part: &str) -> (String, Said) {
-    let words = ["slower", "faster", "more", "fewer", "longer", "shorter", "larger", "smaller"];
+    let words = ["slower", "faster", "more", "fewer", "longer", "shorter", "larger", "smaller", "less"];
     let tokens: Vec<&str> = part.split_whitespace().collect();
-    let at = tokens.iter().position(|token| words.contains(token)).expect("a word of difference");
+    let at = tokens.iter().position(|token| words.contains(token));
+    let at = at.unwrap_or_else(|| panic!("no word of difference in {part:?}"));
     let end = tokens.iter().position(|token| token.parse::<f64>().is_ok()).unwrap_or(at).min(at);
     (tokens[..end].join(" "), Said::Word(tokens[at].to_owned()))
 }
