@@ -3,6 +3,7 @@
 use regrasp::host::Registry;
 use regrasp::run::scenario::{HANDS, SCENARIOS};
 use regrasp::study::compare::{Hypotheses, Machine, Seeds, StudyWish, VariantWish, prepare};
+use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
 use std::io::{Cursor, Write as _};
 use zip::write::SimpleFileOptions;
@@ -65,7 +66,7 @@ pub fn urdfs() -> Vec<Vec<u8>> {
 pub fn mjcfs() -> Vec<Vec<u8>> {
     let mut fingers = String::new();
     for finger in 0..4 {
-        let angle = 1.5708 * f64::from(finger);
+        let angle = FRAC_PI_2 * f64::from(finger);
         let _ = write!(
             fingers,
             "<body name=\"base{finger}\" pos=\"{} {} 0\" euler=\"0 0 {angle}\">\
