@@ -23,11 +23,16 @@ impl<N: AsRef<[f64]>> Columns<N> {
 }
 
 impl Columns<&mut [f64]> {
-    /// Puts three numbers into a row, `every` columns apart.
+    /// Puts one lane of some vectors into a row: all their x, then all y, then all z.
     #[inline]
-    fn put(&mut self, row: usize, column: usize, every: usize, v: [f64; 3]) {
-        let row = &mut self.numbers[row * self.width + self.first + column..];
-        v.iter().enumerate().for_each(|(axis, value)| row[axis * every] = *value);
+    fn put_all(&mut self, row: usize, vectors: &[Vectors], lane: usize) {
+        let count = vectors.len();
+        let row = &mut self.numbers[row * self.width + self.first..][..3 * count];
+        let (xs, others) = row.split_at_mut(count);
+        let (ys, zs) = others.split_at_mut(count);
+        for (((v, x), y), z) in vectors.iter().zip(xs).zip(ys).zip(zs) {
+            [*x, *y, *z] = v.get(lane);
+        }
     }
 }
 
@@ -41,7 +46,7 @@ impl FingerChain {
             for (screw, q) in self.screws.iter().zip(q).rev() {
                 p = Motion::new(screw, q).points(screw, &p);
             }
-            (first..rows.min(first + LANES)).for_each(|row| centers.put(row, 0, 1, p.get(row - first)));
+            (first..rows.min(first + LANES)).for_each(|row| centers.put_all(row, &[p], row - first));
         }
     }
 
@@ -66,9 +71,7 @@ impl FingerChain {
                 columns[coupling.joint] = driven.plus(-1.0, &driven);
             }
             for row in first..rows.min(first + LANES) {
-                let put =
-                    |(joint, v): (usize, &Vectors)| jacobians.put(row, joint, count, v.get(row - first));
-                columns[..count].iter().enumerate().for_each(put);
+                jacobians.put_all(row, &columns[..count], row - first);
             }
         }
     }
