@@ -28,8 +28,8 @@ fn count(change: i64) {
 /// Every call is passed on as it is: what a library of plugins allocates, by the system's allocator itself,
 /// may be freed here and the other way round. What a library allocates is not counted.
 ///
-/// Cost: some ten instructions an allocation; a plan of `cubic` has 93,000 of these, of 600 million
-/// instructions.
+/// Cost: two numbers of the thread's own for each; a plan of `cubic` has 100,000 allocations among 608
+/// million instructions.
 struct Counting;
 
 fn size(layout: Layout) -> i64 {

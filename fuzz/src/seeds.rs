@@ -88,7 +88,8 @@ pub fn mjcfs() -> Vec<Vec<u8>> {
          <contact><exclude body1=\"palm\" body2=\"base0\"/></contact>\n\
          <equality><joint joint1=\"c0\" joint2=\"b0\" polycoef=\"0.1 0.9 0 0 0\"/></equality>\n\
          <actuator><position joint=\"a1\" forcerange=\"-2 2\" kp=\"3\"/></actuator>\n\
-         <keyframe><key name=\"home\" qpos=\"0 0.3 0.4 0 0.3 0.4 0 0.3 0.4 0 0.3 0.4\"/></keyframe>\n</mujoco>\n"
+         <keyframe><key name=\"home\" qpos=\"0 0.3 0.4 0 0.3 0.4 0 0.3 0.4 0 0.3 0.4\"/></keyframe>\n\
+         </mujoco>\n"
     );
     vec![text.into_bytes()]
 }

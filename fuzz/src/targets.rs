@@ -106,10 +106,10 @@ fn write(folder: &Path, name: &str, bytes: &[u8]) {
 
 fn read_plan(bytes: &[u8], _: &Path) -> bool {
     let Ok(plan) = regrasp::plan::from_json(bytes, Path::new("fuzzed.json")) else { return false };
-    let is_valid = regrasp::verify::verify(&plan).is_sound();
+    let is_sound = regrasp::verify::verify(&plan).is_sound();
     let _ = regrasp::plan::motion(&plan);
     let _ = regrasp::export::Scene::new(&plan);
-    is_valid
+    is_sound
 }
 
 fn read_library(bytes: &[u8], folder: &Path) -> bool {

@@ -174,7 +174,7 @@ def surfaces(count: int) -> list[tuple]:
 
 
 def geodesics(count: int) -> list[tuple]:
-    """Between vertices. One peer finds shortest paths, as we do; the other flips edges: shortest of those nearby."""
+    """Between vertices. One peer finds shortest paths, as we do; the other those that are so nearby."""
     rows = []
     for subdivisions in (3, 5):
         ball = trimesh.creation.icosphere(subdivisions=subdivisions, radius=0.03)

@@ -86,8 +86,8 @@ fn group(corners: &mut [[Vec3; 3]], first: usize, groups: &mut Vec<Group>) -> us
     place
 }
 
-/// The solid angle of a few facets, positive where their backs are seen (van Oosterom and Strackee, "The solid
-/// angle of a plane triangle", IEEE Trans. Biomed. Eng. 1983).
+/// The solid angle of a few facets, positive where their backs are seen (van Oosterom and Strackee, "The
+/// solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 1983).
 ///
 /// Half of each is the argument of a complex number; the argument of their product is the sum, but for whole
 /// turns, which are counted.
@@ -100,9 +100,35 @@ fn angle(facets: &[[Vec3; 3]], p: &Vec3) -> f64 {
         let above = a.dot(&b.cross(&c));
         let before: f64 = im;
         (re, im) = (re * below - im * above, re * above + im * below);
-        if before * above > 0.0 && before * im < 0.0 {
+        if before.signum() == above.signum() && before.signum() != im.signum() {
             turns += before.signum();
         }
     }
     2.0 * (im.atan2(re) + 2.0 * PI * turns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use regrasp_api::Random;
+
+    #[test]
+    fn the_angle_of_facets_is_the_sum_of_each() {
+        let mut random = Random::from_key(3, 0, 0, 0);
+        let mut turned = 0;
+        for _ in 0..2000 {
+            // Facets all round the point, so that the sum goes beyond half a turn.
+            let facet = |random: &mut Random| {
+                let facet = [0; 3].map(|_| random.direction() * 0.02);
+                let [a, b, c] = facet;
+                if random.unit() < 0.8 && a.dot(&b.cross(&c)) < 0.0 { [a, c, b] } else { facet }
+            };
+            let facets: [_; FEW] = std::array::from_fn(|_| facet(&mut random));
+            let p = random.direction() * 0.003;
+            let sum: f64 = facets.iter().map(|facet| angle(std::slice::from_ref(facet), &p)).sum();
+            assert!((angle(&facets, &p) - sum).abs() < 1e-9, "{sum}");
+            turned += u32::from(sum.abs() > 2.0 * PI);
+        }
+        assert!(turned > 100, "{turned}");
+    }
 }
